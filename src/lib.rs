@@ -1,0 +1,9 @@
+//! InfoPart: a single-object visual tracker that follows the part of a target that changes least.
+#![deny(missing_docs)]
+
+pub mod frame;
+pub mod geometry;
+pub mod metrics;
+pub mod output;
+pub mod sequence;
+pub mod tracker;

@@ -1,0 +1,2 @@
+//! The `infopart` program.
+fn main() {}

@@ -1,0 +1,63 @@
+//! Where frames and ground truth come from. A source streams: it holds one frame at a time.
+
+use std::time::Duration;
+
+use crate::{
+    frame::Frame,
+    geometry::{Origin, Rect},
+};
+
+mod error;
+
+pub use error::SequenceError;
+
+/// A frame and where it stands in its source.
+#[derive(Debug, Clone)]
+pub struct SourceFrame {
+    /// The pixels: grey or RGB.
+    pub frame: Frame,
+    /// Position among the source's frames, counted from 1 (the first frame of a known OTB range is 1).
+    pub number: usize,
+    /// What a message calls the frame: its file's name, or `frame N` of a video.
+    pub label: String,
+    /// Presentation time since the start of a video; `None` for images.
+    pub time: Option<Duration>,
+}
+
+/// Frames, one after another.
+pub trait FrameSource: Send {
+    /// The next frame, or `None` after the last. Every frame has the first one's size.
+    ///
+    /// # Errors
+    /// [`SequenceError`], naming the file or frame and what to do.
+    fn next_frame(&mut self) -> Result<Option<SourceFrame>, SequenceError>;
+
+    /// How many frames are still to come, where that is known.
+    fn remaining(&self) -> Option<usize>;
+}
+
+/// An input made ready: its frames and what is known of them.
+pub struct Sequence {
+    /// The name of the folder or file, with the target's number if there are several (`Jogging-1`).
+    pub name: String,
+    /// The frames.
+    pub source: Box<dyn FrameSource>,
+    /// The target's true box in each frame of the source, in frame coordinates, from its first frame on; `None` where
+    /// the target is absent (a NaN row or a box without area). Empty if there is no ground truth.
+    pub ground_truth: Vec<Option<Rect>>,
+    /// The number of the first pixel in the input's boxes: 1 for OTB folders, else 0, unless it was given.
+    pub origin: Origin,
+}
+
+/// How an input is opened.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct OpenOptions {
+    /// Which target of an OTB folder that has several (`groundtruth_rect.K.txt`).
+    pub target: Option<usize>,
+    /// First frame to deliver, counted from 1.
+    pub start: Option<usize>,
+    /// Last frame to deliver, counted from 1.
+    pub end: Option<usize>,
+    /// The number of the first pixel in the input's boxes, if it is not the usual one.
+    pub origin: Option<Origin>,
+}

@@ -1,0 +1,105 @@
+//! What a tracker says of a frame.
+
+use std::{fmt, time::Duration};
+
+use serde::{Deserialize, Serialize};
+
+use crate::geometry::Rect;
+
+/// How far a tracker trusts its box.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum Status {
+    /// The target is seen.
+    Tracking,
+    /// The target may be hidden or confused; the model is not updated.
+    Uncertain,
+    /// The target is not seen; the box is the best guess.
+    Lost,
+}
+
+impl fmt::Display for Status {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Tracking => "tracking",
+            Self::Uncertain => "uncertain",
+            Self::Lost => "lost",
+        })
+    }
+}
+
+/// What a tracker says of a frame. It always carries the best box, whatever the status.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct Estimate {
+    /// The whole target, in frame coordinates, unclipped.
+    pub box_in_frame: Rect,
+    /// The part that was tracked, in frame coordinates, unclipped.
+    pub part_in_frame: Rect,
+    /// How sure the tracker is that the box holds the target, in [0, 1].
+    pub confidence: f64,
+    /// The confidence in one word.
+    pub status: Status,
+    /// Effective sample size of the weighted particles before resampling, in [1, particles]; 0 in the first frame and for
+    /// trackers without particles.
+    pub effective_sample_size: f64,
+    /// Covariance of the part's (x, y, w), square pixels, row by row; zero where unknown.
+    pub covariance: [[f64; 3]; 3],
+}
+
+impl Estimate {
+    /// An estimate of which only the boxes, the confidence in [0, 1] and the status are known.
+    pub fn new(box_in_frame: Rect, part_in_frame: Rect, confidence: f64, status: Status) -> Self {
+        Self {
+            box_in_frame,
+            part_in_frame,
+            confidence,
+            status,
+            effective_sample_size: 0.0,
+            covariance: [[0.0; 3]; 3],
+        }
+    }
+}
+
+/// A hypothesis and its weight.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WeightedBox {
+    /// The whole target, in frame coordinates.
+    pub box_in_frame: Rect,
+    /// Normalised weight; all weights of a frame sum to 1.
+    pub weight: f64,
+}
+
+/// How long one stage of a frame took.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct StageTime {
+    /// The stage's name, such as `likelihood`.
+    pub stage: &'static str,
+    /// Wall time.
+    pub time: Duration,
+}
+
+/// What is odd about a first box that is tracked all the same.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum BoxWarning {
+    /// A side is shorter than a few pixels: there is hardly anything to recognise.
+    Tiny,
+    /// Part of the box lies outside the frame; edge pixels are repeated there.
+    PartlyOutside,
+    /// The box covers the whole frame: there is no background to tell it from.
+    CoversFrame,
+}
+
+impl fmt::Display for BoxWarning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Tiny => "the box is so small that there is hardly anything to recognise in it",
+            Self::PartlyOutside => "the box lies partly outside the frame; edge pixels are repeated there",
+            Self::CoversFrame => {
+                "the box covers the whole frame, so there is no background to tell the target from"
+            }
+        })
+    }
+}
