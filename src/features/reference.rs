@@ -108,14 +108,13 @@ pub(crate) fn hog(frame: &FrameView<'_>, target: Rect) -> Vec<f64> {
             let columns = line(target.x - region.x as f64, target.w, cell)
                 ..line(target.x - region.x as f64, target.w, cell + 1);
             let area = (rows.len() * columns.len()) as f64;
-            for bin in 0..BINS {
-                let sum: f64 = rows
-                    .clone()
-                    .flat_map(|r| columns.clone().map(move |c| (r, c)))
-                    .map(|(r, c)| f64::from(bins[r][c][bin]))
-                    .sum();
-                values.push(sum / area);
+            let mut sums = [0.0; BINS];
+            for row in &bins[rows] {
+                for pixel in &row[columns.clone()] {
+                    sums.iter_mut().zip(pixel).for_each(|(sum, bin)| *sum += f64::from(*bin));
+                }
             }
+            values.extend(sums.map(|sum| sum / area));
         }
     }
     let normalise = |values: &mut Vec<f64>| {

@@ -120,7 +120,7 @@ mod tests {
                 with_width += step[0] * step[2];
             }
             let corner = if about_centre { 0.75 } else { 0.0 };
-            let expected = [9.0 + f64::from(corner) * 0.75, 25.0 + f64::from(corner) * 3.0, 2.25];
+            let expected = [9.0 + corner * 0.75, 25.0 + corner * 3.0, 2.25];
             for (found, expected) in squares.iter().zip(expected) {
                 assert!((found / n as f64 / expected - 1.0).abs() < 0.05, "{found} {expected}");
             }

@@ -26,7 +26,7 @@ impl Limited for u64 {}
 impl Limited for usize {}
 
 /// A limit as a reader would write it.
-pub(super) fn show(limit: &impl Display) -> String {
+pub(super) fn show<T: Display>(limit: &T) -> String {
     limit.to_string()
 }
 

@@ -85,7 +85,7 @@ macro_rules! parameters {
                 let mut text = String::from(field::HEADER);
                 let default = Self::default();
                 $(
-                    field::document(&mut text, $doc, $unit, &[$( field::show(&$low), field::show(&$high) )?]);
+                    field::document(&mut text, $doc, $unit, &[$( field::show::<$kind>(&$low), field::show::<$kind>(&$high) )?]);
                     field::assign(&mut text, stringify!($name), &self.$name, &default.$name);
                 )*
                 text
