@@ -7,9 +7,20 @@ use crate::{
     geometry::{Origin, Rect},
 };
 
+mod decode;
 mod error;
+mod ground_truth;
+mod images;
+mod natural;
+mod open;
+mod otb;
+mod range;
+mod size_guard;
+mod video;
 
-pub use error::SequenceError;
+pub use error::{RowProblem, SequenceError};
+pub use ground_truth::{parse_ground_truth, read_ground_truth};
+pub use open::open;
 
 /// A frame and where it stands in its source.
 #[derive(Debug, Clone)]

@@ -1,0 +1,196 @@
+//! Finds out what an input is, and opens it.
+
+use std::path::{Path, PathBuf};
+
+use super::{
+    OpenOptions, Sequence, SequenceError,
+    images::{ImageFiles, file_name, has_image_extension, images_in, images_matching},
+    otb::OtbFolder,
+    range::FrameRange,
+    video::VideoFile,
+};
+use crate::geometry::Origin;
+
+/// Opens an OTB folder (`img/` and `groundtruth_rect*.txt`), a folder or glob of images, one image, or a video file
+/// (through the ffmpeg program).
+///
+/// An OTB folder gives the frames that its ground truth is known to cover (David from 0300 on), and its boxes count
+/// from 1; every other input has no ground truth and counts from 0. An existing path is never taken for a glob.
+/// Images are decoded when they are asked for; of a video the first wanted frame is decoded here, so that a file
+/// that is no video fails here.
+///
+/// # Errors
+/// [`SequenceError`], naming the file, frame or flag and what to do: nothing at `input`, no images, several targets and
+/// none chosen, a target that does not exist, unreadable ground truth, an impossible `start` or `end`, a video that
+/// ffmpeg cannot read, ffmpeg missing.
+pub fn open(input: &str, options: &OpenOptions) -> Result<Sequence, SequenceError> {
+    FrameRange::of(options)?;
+    let path = Path::new(input);
+    if path.is_dir() {
+        return open_folder(path, input, options);
+    }
+    refuse_target(input, options)?;
+    if path.exists() {
+        return open_file(path, input, options);
+    }
+    if input.contains(['*', '?', '[']) {
+        return open_glob(input, options);
+    }
+    Err(SequenceError::NoSuchInput { path: path.to_owned() })
+}
+
+fn open_folder(path: &Path, input: &str, options: &OpenOptions) -> Result<Sequence, SequenceError> {
+    let name = folder_name(path);
+    if let Some(folder) = OtbFolder::recognise(path, &name)? {
+        return folder.open(options);
+    }
+    refuse_target(input, options)?;
+    let mut images = images_in(path)?;
+    let nested = path.join("img");
+    if images.is_empty() && nested.is_dir() {
+        images = images_in(&nested)?;
+    }
+    of_images(images, name, input, options)
+}
+
+fn open_glob(input: &str, options: &OpenOptions) -> Result<Sequence, SequenceError> {
+    let images = images_matching(input)?;
+    let name = images.first().and_then(|first| first.parent()).map_or_else(|| input.to_owned(), folder_name);
+    of_images(images, name, input, options)
+}
+
+fn open_file(path: &Path, input: &str, options: &OpenOptions) -> Result<Sequence, SequenceError> {
+    let name = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
+    if has_image_extension(path) {
+        return of_images(vec![path.to_owned()], name, input, options);
+    }
+    let source = VideoFile::open(path, FrameRange::of(options)?)?;
+    Ok(without_ground_truth(Box::new(source), name, options))
+}
+
+fn of_images(
+    images: Vec<PathBuf>,
+    name: String,
+    input: &str,
+    options: &OpenOptions,
+) -> Result<Sequence, SequenceError> {
+    if images.is_empty() {
+        return Err(SequenceError::NoImages { path: PathBuf::from(input) });
+    }
+    let range = FrameRange::of(options)?;
+    let positions = range.positions(images.len(), input)?;
+    let source = ImageFiles::new(images[positions].to_vec(), range.start);
+    Ok(without_ground_truth(Box::new(source), name, options))
+}
+
+fn without_ground_truth(
+    source: Box<dyn super::FrameSource>,
+    name: String,
+    options: &OpenOptions,
+) -> Sequence {
+    Sequence { name, source, ground_truth: Vec::new(), origin: options.origin.unwrap_or(Origin::Zero) }
+}
+
+fn refuse_target(input: &str, options: &OpenOptions) -> Result<(), SequenceError> {
+    match options.target {
+        Some(target) => Err(SequenceError::TargetWithoutChoice { input: input.to_owned(), target }),
+        None => Ok(()),
+    }
+}
+
+/// The folder's own name, also where the path ends in `.` or `..`.
+fn folder_name(path: &Path) -> String {
+    let name = |path: &Path| path.file_name().map(|name| name.to_string_lossy().into_owned());
+    let resolved = || std::path::absolute(path).ok().and_then(|path| path.canonicalize().ok());
+    name(path).or_else(|| resolved().and_then(|path| name(&path))).unwrap_or_else(|| file_name(path))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn message(input: &str, options: &OpenOptions) -> String {
+        open(input, options).map(|_| ()).unwrap_err().to_string()
+    }
+
+    fn folder_of_images(count: usize) -> tempfile::TempDir {
+        let folder = tempfile::tempdir().unwrap();
+        for number in 1..=count {
+            image::GrayImage::new(8, 6).save(folder.path().join(format!("{number}.png"))).unwrap();
+        }
+        folder
+    }
+
+    #[test]
+    fn what_does_not_exist_is_named_with_a_remedy() {
+        let text = message("no/such/folder", &OpenOptions::default());
+        assert!(text.starts_with("no/such/folder: no such file or folder; check the spelling"), "{text}");
+        let text = message("no/such/*.jpg", &OpenOptions::default());
+        assert!(text.starts_with("no/such/*.jpg: no images there"), "{text}");
+        let empty = tempfile::tempdir().unwrap();
+        let text = message(empty.path().to_str().unwrap(), &OpenOptions::default());
+        assert!(text.contains(": no images there; give a folder or glob"), "{text}");
+    }
+
+    #[test]
+    fn folders_globs_and_single_images_are_plain_sequences() {
+        let folder = folder_of_images(3);
+        let path = folder.path().to_str().unwrap().to_owned();
+        let name = folder.path().file_name().unwrap().to_str().unwrap();
+        for (input, frames, expected) in [
+            (path.clone(), 3, name),
+            (format!("{path}/[12].png"), 2, name),
+            (format!("{path}/3.png"), 1, "3"),
+        ] {
+            let mut sequence = open(&input, &OpenOptions::default()).unwrap();
+            assert_eq!((sequence.source.remaining(), sequence.name.as_str()), (Some(frames), expected));
+            assert_eq!((sequence.origin, sequence.ground_truth.len()), (Origin::Zero, 0));
+            assert_eq!(sequence.source.next_frame().unwrap().unwrap().frame.width(), 8);
+        }
+    }
+
+    #[test]
+    fn a_range_cuts_any_images_and_keeps_their_numbers() {
+        let folder = folder_of_images(5);
+        let path = folder.path().to_str().unwrap();
+        let options = OpenOptions { start: Some(2), end: Some(3), origin: Some(Origin::One), target: None };
+        let mut sequence = open(path, &options).unwrap();
+        assert_eq!((sequence.source.remaining(), sequence.origin), (Some(2), Origin::One));
+        let numbers: Vec<usize> =
+            std::iter::from_fn(|| sequence.source.next_frame().unwrap()).map(|frame| frame.number).collect();
+        assert_eq!(numbers, [2, 3]);
+        let text = message(path, &OpenOptions { start: Some(6), ..OpenOptions::default() });
+        assert!(text.contains("--start 6:") && text.contains("only 5 frames"), "{text}");
+    }
+
+    #[test]
+    fn a_target_without_targets_names_the_flag() {
+        let folder = folder_of_images(1);
+        let path = folder.path().to_str().unwrap();
+        let options = OpenOptions { target: Some(2), ..OpenOptions::default() };
+        for input in [path.to_owned(), format!("{path}/*.png"), format!("{path}/1.png")] {
+            assert!(message(&input, &options).contains("--target 2 has no meaning here"));
+        }
+    }
+
+    #[test]
+    fn an_existing_folder_is_not_a_glob_and_img_alone_is_plain() {
+        let folder = folder_of_images(2);
+        let odd = folder.path().join("odd[1]");
+        std::fs::create_dir_all(odd.join("img")).unwrap();
+        std::fs::copy(folder.path().join("1.png"), odd.join("img/1.png")).unwrap();
+        let sequence = open(odd.to_str().unwrap(), &OpenOptions::default()).unwrap();
+        assert_eq!((sequence.name.as_str(), sequence.origin), ("odd[1]", Origin::Zero));
+        assert_eq!(sequence.source.remaining(), Some(1));
+    }
+
+    #[test]
+    fn a_folder_given_by_dots_still_has_its_name() {
+        let folder = folder_of_images(1);
+        let dotted = folder.path().join("..").join(folder.path().file_name().unwrap()).join(".");
+        let inner = folder.path().join("inner");
+        std::fs::create_dir(&inner).unwrap();
+        assert_eq!(folder_name(&dotted), folder_name(folder.path()));
+        assert_eq!(folder_name(&inner.join("..")), folder_name(folder.path()));
+    }
+}

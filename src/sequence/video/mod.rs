@@ -1,0 +1,92 @@
+//! Frames of a video file, through a pipe from the ffmpeg program.
+
+use std::path::{Path, PathBuf};
+
+use super::{FrameSource, SequenceError, SourceFrame, range::FrameRange, size_guard::SizeGuard};
+
+mod ffmpeg;
+mod log;
+mod ppm;
+
+use ffmpeg::{Decoder, RawFrame};
+
+/// A video's frames, decoded one at a time by a child process that is ended when this is dropped.
+#[derive(Debug)]
+pub(super) struct VideoFile {
+    path: PathBuf,
+    decoder: Decoder,
+    range: FrameRange,
+    /// Frames decoded so far, so the number of the latest.
+    decoded: usize,
+    /// The first wanted frame, decoded on opening.
+    first: Option<RawFrame>,
+    size: SizeGuard,
+}
+
+impl VideoFile {
+    /// Starts the program that INFOPART_FFMPEG names, else `ffmpeg`, and decodes up to the range's first frame.
+    pub(super) fn open(path: &Path, range: FrameRange) -> Result<Self, SequenceError> {
+        let program = std::env::var("INFOPART_FFMPEG").ok().filter(|name| !name.is_empty());
+        Self::open_with(program.as_deref().unwrap_or("ffmpeg"), path, range)
+    }
+
+    fn open_with(program: &str, path: &Path, range: FrameRange) -> Result<Self, SequenceError> {
+        let (decoder, first) = Decoder::start(program, path)?;
+        let mut video = Self {
+            path: path.to_owned(),
+            decoder,
+            range,
+            decoded: 1,
+            first: Some(first),
+            size: SizeGuard::default(),
+        };
+        video.skip_to_start()?;
+        Ok(video)
+    }
+
+    fn skip_to_start(&mut self) -> Result<(), SequenceError> {
+        while self.decoded < self.range.start {
+            self.first = self.decoder.next_frame(&self.path, self.decoded)?;
+            if self.first.is_none() {
+                let input = self.path.display().to_string();
+                return Err(SequenceError::StartBeyondEnd {
+                    input,
+                    start: self.range.start,
+                    frames: self.decoded,
+                });
+            }
+            self.decoded += 1;
+        }
+        Ok(())
+    }
+
+    fn next_raw(&mut self) -> Result<Option<RawFrame>, SequenceError> {
+        if let Some(first) = self.first.take() {
+            return Ok(Some(first));
+        }
+        if self.range.end.is_some_and(|end| self.decoded >= end) {
+            return Ok(None);
+        }
+        let next = self.decoder.next_frame(&self.path, self.decoded)?;
+        self.decoded += usize::from(next.is_some());
+        Ok(next)
+    }
+}
+
+impl FrameSource for VideoFile {
+    fn next_frame(&mut self) -> Result<Option<SourceFrame>, SequenceError> {
+        let Some(RawFrame { frame, time }) = self.next_raw()? else {
+            return Ok(None);
+        };
+        let number = self.decoded;
+        self.size.check(&frame, || format!("{}, frame {number}", self.path.display()))?;
+        Ok(Some(SourceFrame { frame, number, label: format!("frame {number}"), time }))
+    }
+
+    fn remaining(&self) -> Option<usize> {
+        None
+    }
+}
+
+#[cfg(all(test, unix))]
+mod tests;

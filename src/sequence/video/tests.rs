@@ -1,0 +1,121 @@
+//! Videos, through stand-ins for ffmpeg; the real one is tried on real videos in `tests/sequence_real.rs`.
+
+use std::{fs, path::PathBuf, process::Command};
+
+use super::*;
+
+const ALL: FrameRange = FrameRange { start: 1, end: None };
+
+/// A shell script that plays ffmpeg, in a folder of its own.
+///
+/// A shell writes it, for a file this process had open for writing might still be open in a child that another test
+/// is just starting, and then cannot be run ("text file busy").
+fn stand_in(script: &str) -> (tempfile::TempDir, String) {
+    let folder = tempfile::tempdir().unwrap();
+    let program = folder.path().join("ffmpeg").to_str().unwrap().to_owned();
+    let write = r#"printf '#!/bin/sh\n%s\n' "$2" > "$1" && chmod 755 "$1""#;
+    let status = Command::new("sh").args(["-c", write, "sh", &program, script]).status().unwrap();
+    assert!(status.success());
+    (folder, program)
+}
+
+/// A script that sends frames of one pixel at the given times.
+fn frames_at(times: &[&str]) -> String {
+    let lines = times.iter().map(|time| {
+        format!(
+            "echo '[Parsed_showinfo_0 @ 0x1] n: 0 pts_time:{time} fmt:x' >&2; printf 'P6\\n1 1\\n255\\nabc'\n"
+        )
+    });
+    lines.collect()
+}
+
+fn opened(script: &str, range: FrameRange) -> Result<VideoFile, SequenceError> {
+    let (_folder, program) = stand_in(script);
+    VideoFile::open_with(&program, &PathBuf::from("some.mp4"), range)
+}
+
+#[test]
+fn times_count_from_the_first_frame_and_may_be_uneven() {
+    let mut video = opened(&frames_at(&["7.5", "7.54", "NOPTS", "9.5"]), ALL).unwrap();
+    let mut times = Vec::new();
+    while let Some(frame) = video.next_frame().unwrap() {
+        times.push(frame.time.map(|time| time.as_millis()));
+    }
+    assert_eq!(times, [Some(0), Some(40), None, Some(2000)]);
+}
+
+#[test]
+fn a_range_skips_and_stops_but_keeps_numbers_and_times() {
+    let range = FrameRange { start: 2, end: Some(3) };
+    let mut video = opened(&frames_at(&["0", "1", "2", "3"]), range).unwrap();
+    let mut seen = Vec::new();
+    while let Some(frame) = video.next_frame().unwrap() {
+        seen.push((frame.number, frame.label, frame.time.map(|time| time.as_secs())));
+    }
+    assert_eq!(seen, [(2, "frame 2".to_owned(), Some(1)), (3, "frame 3".to_owned(), Some(2))]);
+    let beyond = opened(&frames_at(&["0", "1"]), FrameRange { start: 3, end: None }).unwrap_err().to_string();
+    assert!(beyond.contains("--start 3: some.mp4 has only 2 frames"), "{beyond}");
+}
+
+#[test]
+fn a_missing_ffmpeg_says_how_to_install_it() {
+    let error = VideoFile::open_with("no-such-ffmpeg", &PathBuf::from("a.mp4"), ALL).unwrap_err().to_string();
+    for part in
+        ["a.mp4", "`no-such-ffmpeg`", "apt install ffmpeg", "brew install ffmpeg", "winget install ffmpeg"]
+    {
+        assert!(error.contains(part), "{error}");
+    }
+}
+
+#[test]
+fn an_unreadable_file_gives_ffmpegs_own_message() {
+    let script = "echo 'file:some.mp4: Invalid data found when processing input' >&2; exit 1";
+    let error = opened(script, ALL).unwrap_err().to_string();
+    assert!(
+        error.contains("some.mp4: ffmpeg finds no video in it: Invalid data found when processing"),
+        "{error}"
+    );
+}
+
+#[test]
+fn an_ffmpeg_that_dies_names_the_last_good_frame() {
+    for ending in ["echo 'Out of luck' >&2; exit 1", "echo 'Out of luck' >&2; printf 'P6\\n1 1\\n255\\nab'"] {
+        let mut video = opened(&(frames_at(&["0", "1"]) + ending), ALL).unwrap();
+        assert!(video.next_frame().unwrap().is_some() && video.next_frame().unwrap().is_some());
+        let error = video.next_frame().unwrap_err().to_string();
+        assert!(error.contains("some.mp4: the video broke off after frame 2: Out of luck"), "{error}");
+    }
+}
+
+#[test]
+fn an_old_ffmpeg_gets_the_old_option() {
+    let script = "case \"$*\" in *-fps_mode*) echo \"Unrecognized option 'fps_mode'.\" >&2; exit 1;; esac\n\
+        case \"$*\" in *'-vsync passthrough'*) ;; *) exit 1;; esac\n";
+    let mut video = opened(&(script.to_owned() + &frames_at(&["0"])), ALL).unwrap();
+    assert!(video.next_frame().unwrap().is_some());
+    assert!(video.next_frame().unwrap().is_none());
+}
+
+#[test]
+fn a_frame_of_another_size_names_the_frame() {
+    let script = frames_at(&["0"]) + "printf 'P6\\n2 1\\n255\\nabcdef'";
+    let mut video = opened(&script, ALL).unwrap();
+    assert!(video.next_frame().unwrap().is_some());
+    let error = video.next_frame().unwrap_err().to_string();
+    assert!(error.contains("some.mp4, frame 2: this frame is 2x1 but the first is 1x1"), "{error}");
+}
+
+#[test]
+fn dropping_a_video_ends_its_process() {
+    let (folder, program) = stand_in(&(frames_at(&["0"]) + "echo $$ > \"$0.pid\"; exec sleep 1000"));
+    let video = VideoFile::open_with(&program, &PathBuf::from("some.mp4"), ALL).unwrap();
+    let pid_file = folder.path().join("ffmpeg.pid");
+    let written = || fs::read_to_string(&pid_file).ok().filter(|text| text.ends_with('\n'));
+    let pid = std::iter::repeat_with(written).find_map(|text| {
+        std::thread::sleep(std::time::Duration::from_millis(5));
+        text
+    });
+    drop(video);
+    let alive = Command::new("kill").args(["-0", pid.unwrap().trim()]).status().unwrap();
+    assert!(!alive.success());
+}

@@ -1,0 +1,33 @@
+//! What several test programs need. Each of them uses only a part.
+#![allow(dead_code)]
+
+use std::path::{Path, PathBuf};
+
+/// Where the real sequences are: INFOPART_DATA, or `shared/data` beside the project. Without them it says aloud that
+/// the test is skipped.
+pub fn data_dir() -> Option<PathBuf> {
+    let found = match std::env::var_os("INFOPART_DATA") {
+        Some(given) => PathBuf::from(given),
+        None => Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data"),
+    };
+    if found.join("otb").is_dir() {
+        return Some(found);
+    }
+    skipped(&format!("no data at {}; set INFOPART_DATA to the folder that has otb/", found.display()));
+    None
+}
+
+/// Whether the ffmpeg program runs here. Without it it says aloud that the test is skipped.
+pub fn has_ffmpeg() -> bool {
+    let runs = std::process::Command::new("ffmpeg").arg("-version").output().is_ok();
+    if !runs {
+        skipped("the ffmpeg program is not installed");
+    }
+    runs
+}
+
+/// Written past the test harness, which would hide it in a test that passes.
+fn skipped(why: &str) {
+    use std::io::Write;
+    let _ = writeln!(std::io::stderr(), "SKIPPED: {why}");
+}
