@@ -1,6 +1,7 @@
 //! InfoPart: a single-object visual tracker that follows the part of a target that changes least.
 #![deny(missing_docs)]
 
+pub mod bayes;
 pub mod frame;
 pub mod geometry;
 pub mod metrics;

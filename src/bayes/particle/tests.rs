@@ -1,0 +1,204 @@
+//! The particle filter against exact answers.
+
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rand_distr::StandardNormal;
+
+use super::*;
+use crate::bayes::random_walk::RandomWalk;
+
+/// y = x + N(0, sigma^2).
+struct Measured {
+    y: f64,
+    sigma: f64,
+}
+
+impl Observation<1> for Measured {
+    fn log_likelihood(&self, state: &State<1>) -> f64 {
+        let z = (self.y - state[0]) / self.sigma;
+        -0.5 * z * z - self.sigma.ln() - 0.5 * std::f64::consts::TAU.ln()
+    }
+}
+
+struct Nothing;
+
+impl Observation<1> for Nothing {
+    fn log_likelihood(&self, _: &State<1>) -> f64 {
+        f64::NEG_INFINITY
+    }
+}
+
+fn normal_particles(n: usize, rng: &mut ChaCha8Rng) -> Vec<State<1>> {
+    (0..n).map(|_| State::<1>::new(rng.sample(StandardNormal))).collect()
+}
+
+/// Mean, variance and log-evidence of the exact scalar Kalman filter with x_0 ~ N(0, 1).
+fn kalman(ys: &[f64], q: f64, r: f64) -> Vec<(f64, f64, f64)> {
+    let (mut m, mut p) = (0.0, 1.0);
+    ys.iter()
+        .map(|y| {
+            p += q;
+            let s: f64 = p + r;
+            let innovation = y - m;
+            let evidence = -0.5 * innovation * innovation / s - 0.5 * (std::f64::consts::TAU * s).ln();
+            let gain = p / s;
+            m += gain * innovation;
+            p *= 1.0 - gain;
+            (m, p, evidence)
+        })
+        .collect()
+}
+
+const YS: [f64; 6] = [0.5, 1.4, 0.9, 2.2, 2.9, 2.4];
+
+#[test]
+fn on_a_linear_gaussian_model_it_meets_the_exact_kalman_filter() {
+    let (q, r) = (0.3f64, 0.2f64);
+    let transition = RandomWalk::<1>::new(State::<1>::new(q.sqrt()));
+    for resampling in
+        [Resampling::Multinomial, Resampling::Stratified, Resampling::Systematic, Resampling::Residual]
+    {
+        let mut rng = ChaCha8Rng::seed_from_u64(1);
+        let options = ParticleFilterOptions { resampling, ..Default::default() };
+        let mut filter = ParticleFilter::new(normal_particles(40_000, &mut rng), options);
+        for (y, (mean, variance, evidence)) in YS.iter().zip(kalman(&YS, q, r)) {
+            let found = filter.step(&transition, &Measured { y: *y, sigma: r.sqrt() }, &mut rng);
+            assert!((found.mean[0] - mean).abs() < 0.02, "{resampling:?}: {} {mean}", found.mean[0]);
+            assert!((found.covariance[0] - variance).abs() < 0.01, "{resampling:?}");
+            assert!((found.log_evidence - evidence).abs() < 0.03, "{resampling:?}");
+        }
+    }
+}
+
+#[test]
+fn a_shifted_proposal_is_made_good_by_its_ratio() {
+    let (q, r) = (0.3f64, 0.2f64);
+    let transition = RandomWalk::<1>::new(State::<1>::new(q.sqrt()));
+    let shifted = RandomWalk::<1> { shift: State::<1>::new(0.6), sigma: State::<1>::new(0.9) };
+    let mut rng = ChaCha8Rng::seed_from_u64(2);
+    let mut filter =
+        ParticleFilter::new(normal_particles(40_000, &mut rng), ParticleFilterOptions::default());
+    for (y, (mean, variance, evidence)) in YS.iter().zip(kalman(&YS, q, r)) {
+        filter.propose(&shifted, &transition, &mut rng);
+        let found = filter.correct(&Measured { y: *y, sigma: r.sqrt() }, &mut rng);
+        assert!((found.mean[0] - mean).abs() < 0.03, "{} {mean}", found.mean[0]);
+        assert!((found.covariance[0] - variance).abs() < 0.02);
+        assert!((found.log_evidence - evidence).abs() < 0.04);
+    }
+}
+
+#[test]
+fn estimating_after_resampling_has_the_same_mean_but_is_another_number() {
+    let transition = RandomWalk::<1>::new(State::<1>::new(1.0));
+    let run = |estimate_after_resampling| {
+        let mut rng = ChaCha8Rng::seed_from_u64(4);
+        let options = ParticleFilterOptions {
+            estimate_after_resampling,
+            resampling: Resampling::Multinomial,
+            ..Default::default()
+        };
+        let mut filter = ParticleFilter::new(normal_particles(2000, &mut rng), options);
+        filter.step(&transition, &Measured { y: 2.0, sigma: 0.1 }, &mut rng)
+    };
+    let (before, after) = (run(false), run(true));
+    assert!(before.resampled && after.resampled);
+    assert_ne!(before.mean, after.mean);
+    assert!((before.mean - after.mean).norm() < 0.05);
+}
+
+#[test]
+fn it_resamples_only_below_the_threshold() {
+    let transition = RandomWalk::<1>::new(State::<1>::new(0.1));
+    let mut rng = ChaCha8Rng::seed_from_u64(9);
+    let mut filter = ParticleFilter::new(normal_particles(1000, &mut rng), ParticleFilterOptions::default());
+    let vague = filter.step(&transition, &Measured { y: 0.0, sigma: 10.0 }, &mut rng);
+    assert!(!vague.resampled && vague.effective_sample_size > 990.0);
+    let sharp = filter.step(&transition, &Measured { y: 0.0, sigma: 0.01 }, &mut rng);
+    assert!(sharp.resampled && sharp.effective_sample_size < 100.0);
+    assert_eq!(filter.weights()[0], 1.0 / 1000.0);
+}
+
+#[test]
+fn an_observation_that_nothing_explains_leaves_uniform_weights() {
+    let transition = RandomWalk::<1>::new(State::<1>::new(0.1));
+    let mut rng = ChaCha8Rng::seed_from_u64(9);
+    let mut filter = ParticleFilter::new(normal_particles(100, &mut rng), ParticleFilterOptions::default());
+    let found = filter.step(&transition, &Nothing, &mut rng);
+    assert_eq!(found.log_evidence, f64::NEG_INFINITY);
+    assert!((found.effective_sample_size - 100.0).abs() < 1e-9 && found.mean[0].is_finite());
+}
+
+#[test]
+fn the_same_seed_gives_the_same_bits_at_any_number_of_threads() {
+    let run = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            let transition = RandomWalk::<1>::new(State::<1>::new(0.5));
+            let mut rng = ChaCha8Rng::seed_from_u64(5);
+            let mut filter =
+                ParticleFilter::new(normal_particles(1001, &mut rng), ParticleFilterOptions::default());
+            YS.map(|y| filter.step(&transition, &Measured { y, sigma: 0.3 }, &mut rng).mean[0].to_bits())
+        })
+    };
+    assert_eq!(run(1), run(2));
+    assert_eq!(run(1), run(8));
+}
+
+/// The paper's weather: clear days never follow each other; rain and snow stay with 1/2.
+struct Weather;
+
+const CLEAR: f64 = 0.0;
+const RAIN: f64 = 1.0;
+const SNOW: f64 = 2.0;
+
+impl Weather {
+    fn probability(next: f64, previous: f64) -> f64 {
+        match (previous == CLEAR, next == previous) {
+            (true, true) => 0.0,
+            (true, false) | (false, true) => 0.5,
+            (false, false) => 0.25,
+        }
+    }
+}
+
+impl Transition<1> for Weather {
+    fn sample<R: Rng + ?Sized>(&self, previous: &State<1>, rng: &mut R) -> State<1> {
+        let mut u: f64 = rng.random();
+        for next in [CLEAR, RAIN, SNOW] {
+            u -= Self::probability(next, previous[0]);
+            if u < 0.0 {
+                return State::<1>::new(next);
+            }
+        }
+        State::<1>::new(SNOW)
+    }
+
+    fn log_density(&self, next: &State<1>, previous: &State<1>) -> f64 {
+        Self::probability(next[0], previous[0]).ln()
+    }
+}
+
+#[test]
+fn a_week_after_rain_it_is_clear_with_the_papers_probability() {
+    let mut exact = [0.0, 1.0, 0.0];
+    for _ in 0..7 {
+        exact = [CLEAR, RAIN, SNOW].map(|next| {
+            [CLEAR, RAIN, SNOW]
+                .iter()
+                .zip(exact)
+                .map(|(&p, share)| share * Weather::probability(next, p))
+                .sum()
+        });
+    }
+    assert_eq!(exact[0], 0.200_012_207_031_25);
+
+    let n = 200_000;
+    let mut rng = ChaCha8Rng::seed_from_u64(7);
+    let mut filter = ParticleFilter::new(vec![State::<1>::new(RAIN); n], ParticleFilterOptions::default());
+    for _ in 0..7 {
+        filter.predict(&Weather, &mut rng);
+    }
+    let clear = filter.states().iter().filter(|s| s[0] == CLEAR).count() as f64 / n as f64;
+    let standard_error = (exact[0] * (1.0 - exact[0]) / n as f64).sqrt();
+    assert!((clear - exact[0]).abs() < 4.0 * standard_error, "{clear}");
+}
