@@ -69,7 +69,7 @@ pub struct RunError {
     /// The last of them.
     pub last_good: Option<FrameName>,
     /// Why it ended.
-    pub failure: RunFailure,
+    pub failure: Box<RunFailure>,
 }
 
 /// How a message names a frame.
@@ -144,7 +144,11 @@ pub fn run(
                 // The first failure is the one to tell; a second is most often its consequence.
                 let _ = observer.flush();
             }
-            Err(RunError { frames_done: progress.report.frames, last_good: progress.last_good, failure })
+            Err(RunError {
+                frames_done: progress.report.frames,
+                last_good: progress.last_good,
+                failure: Box::new(failure),
+            })
         }
     }
 }

@@ -46,7 +46,7 @@ fn message(error: &Error) -> String {
 
 fn code_of(error: &Error) -> u8 {
     if let Some(stopped) = error.downcast_ref::<RunError>() {
-        return match &stopped.failure {
+        return match &*stopped.failure {
             RunFailure::Interrupted => INTERRUPTED,
             RunFailure::Output(OutputError::Closed) => 0,
             _ => BAD_INPUT,

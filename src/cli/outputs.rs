@@ -9,7 +9,7 @@ use infopart::{
         FrameEvent, Observer, OutputError, PartialFile, PictureFolder, Progress, RowFormat, RowOptions,
         RowWriter, StandardOutput, VIDEO_EXTENSIONS, VideoWriter,
     },
-    run::{RunError, RunFailure},
+    run::RunError,
 };
 
 use super::{exit::BadInput, track::TrackArgs};
@@ -66,19 +66,12 @@ impl Outputs {
 
     /// A run's error with what is left of the run.
     pub fn explain(&self, error: RunError) -> Error {
-        if matches!(error.failure, RunFailure::NoFrames) {
-            return error.into();
-        }
-        let kept = match (&error.last_good, &self.rows_until_whole) {
-            (None, _) => "no frame was tracked".to_owned(),
-            (Some(last), Some(path)) => {
-                format!("the last good frame is {last}; the rows up to it are in {}", path.display())
-            }
-            (Some(last), None) => {
-                format!("the last good frame is {last}; the rows up to it are on standard output")
-            }
+        let Some(last) = &error.last_good else { return error.into() };
+        let place = match &self.rows_until_whole {
+            Some(path) => format!("in {}", path.display()),
+            None => "on standard output".to_owned(),
         };
-        let message = format!("{error}\n  {kept}");
+        let message = format!("{error}\n  the last good frame is {last}; the rows up to it are {place}");
         Error::new(error).context(message)
     }
 }

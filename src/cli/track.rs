@@ -2,12 +2,12 @@
 
 use std::{path::PathBuf, sync::Arc};
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Error, Result};
 use clap::Args;
 use infopart::{
     geometry::{Origin, Rect},
     output::Summary,
-    run::{RunReport, run},
+    run::{RunError, RunFailure, RunReport, run},
     sequence::{self, OpenOptions, Sequence},
     tracker::{CheckedParameters, InfoPart, Tracker},
 };
@@ -82,7 +82,7 @@ pub fn track(args: &TrackArgs) -> Result<()> {
         &mut outputs.observers(),
         interrupted,
     )
-    .map_err(|error| outputs.explain(error))?;
+    .map_err(|error| name_bad_init(args, outputs.explain(error)))?;
     tell_summary(args, summary(args, sequence.name, tracker.name(), &parameters, threads, report))
 }
 
@@ -128,6 +128,17 @@ fn as_in_file(origin: Origin, in_frame: Rect) -> Rect {
     let short = |value: f64| (value * 1e9).round() / 1e9;
     let rounded = Rect { x: short(written.x), y: short(written.y), ..written };
     if origin.to_frame(rounded) == in_frame { rounded } else { written }
+}
+
+/// Puts --init before the tracker's complaint about the first box, if that is where the box came from.
+fn name_bad_init(args: &TrackArgs, error: Error) -> Error {
+    let refused_at_once = error
+        .downcast_ref::<RunError>()
+        .is_some_and(|run| run.frames_done == 0 && matches!(*run.failure, RunFailure::Track { .. }));
+    match args.init {
+        Some(Rect { x, y, w, h }) if refused_at_once => error.context(format!("--init {x},{y},{w},{h}")),
+        _ => error,
+    }
 }
 
 fn thread_pool(threads: usize) -> Result<Arc<ThreadPool>> {

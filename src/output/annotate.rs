@@ -14,8 +14,10 @@ const PARTICLE: Ink = Ink::solid([255, 224, 64]);
 /// Longer side, in pixels, below which a frame is enlarged so that lines and letters stay legible.
 const LEGIBLE_SIDE: u32 = 600;
 const LARGEST_ZOOM: u32 = 4;
-/// Longer side, in pixels, per size of letters and per 2 pixels of line.
+/// Longer side, in pixels, per size of letters.
 const SIDE_PER_SCALE: u32 = 1200;
+/// Longer side, in pixels, up to which lines have their usual thickness; beyond, they grow with it.
+const SIDE_PER_UNIT: f64 = 900.0;
 
 /// A copy of the event's frame with the full box in the colour of the status (green: tracking, orange: uncertain,
 /// red: lost), the tracked part as a thinner box, the particles as dots at their boxes' centres, the ground truth as
@@ -57,8 +59,10 @@ struct Page {
     picture: RgbImage,
     /// Picture pixels a frame pixel.
     zoom: u32,
-    /// Size of letters and of half a line, pixels.
+    /// Size of letters, as a multiple of the smallest.
     scale: u32,
+    /// Half the thickness of the full box's line, pixels.
+    unit: f64,
 }
 
 impl Page {
@@ -70,8 +74,10 @@ impl Page {
             1 => original,
             _ => imageops::resize(&original, width * zoom, height * zoom, imageops::FilterType::CatmullRom),
         };
-        let scale = picture.width().max(picture.height()).div_ceil(SIDE_PER_SCALE).max(1);
-        Self { picture, zoom, scale }
+        let side = picture.width().max(picture.height());
+        let scale = side.div_ceil(SIDE_PER_SCALE);
+        let unit = (f64::from(side) / SIDE_PER_UNIT).max(1.0);
+        Self { picture, zoom, scale, unit }
     }
 
     fn zoomed(&self, in_frame: Rect) -> Rect {
@@ -81,11 +87,8 @@ impl Page {
 
     /// A line over a darker, wider one, so that it shows on any background.
     fn outline(&mut self, area: Rect, stroke: Stroke) {
-        let halo = Stroke {
-            ink: BLACK.faded(0.4),
-            thickness: stroke.thickness + 2.0 * f64::from(self.scale),
-            dash: None,
-        };
+        let halo =
+            Stroke { ink: BLACK.faded(0.4), thickness: stroke.thickness + 2.0 * self.unit, dash: None };
         canvas::stroke_rect(&mut self.picture, area, halo);
         canvas::stroke_rect(&mut self.picture, area, stroke);
     }
@@ -98,19 +101,19 @@ impl Page {
             // The square root keeps light particles visible beside the heaviest.
             let relative = if largest > 0.0 { (hypothesis.weight / largest).sqrt() } else { 1.0 };
             let ink = PARTICLE.faded(0.12 + 0.6 * relative);
-            canvas::fill_disc(&mut self.picture, centre, 1.2 * f64::from(self.scale), ink);
+            canvas::fill_disc(&mut self.picture, centre, 1.2 * self.unit, ink);
         }
     }
 
     fn draw_ground_truth(&mut self, ground_truth: Option<Rect>) {
         let Some(truth) = ground_truth else { return };
-        let unit = f64::from(self.scale);
+        let unit = self.unit;
         let stroke = Stroke { ink: WHITE.faded(0.9), thickness: 1.2 * unit, dash: Some(5.0 * unit) };
         self.outline(self.zoomed(truth), stroke);
     }
 
     fn draw_boxes(&mut self, event: &FrameEvent<'_>) {
-        let unit = f64::from(self.scale);
+        let unit = self.unit;
         let ink = status_ink(event.estimate.status);
         let (full, part) = (event.estimate.box_in_frame, event.estimate.part_in_frame);
         if part != full {

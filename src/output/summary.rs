@@ -32,7 +32,9 @@ impl Summary {
         let report = &self.report;
         let mut text = String::new();
         // Writing to a string cannot fail.
-        let mut line = |name: &str, value: String| drop(writeln!(text, "{name:<11}{value}"));
+        let mut line = |name: &str, value: String| {
+            let _ = writeln!(text, "{name:<11}{value}");
+        };
         line("sequence", self.sequence.clone());
         line("tracker", format!("{}, region {}, preset {}", self.tracker, self.region, self.preset));
         line("frames", frames_text(report));
@@ -57,15 +59,14 @@ impl Summary {
             line("AUC", format!("{:>6.3}    area under the success curve", scores.auc));
         }
         if timing {
-            for (index, stage) in report.stages.iter().enumerate() {
-                let name = if index == 0 { "timing" } else { "" };
-                line(name, format!("{:>9.3} ms  {}", stage.mean_milliseconds, stage.stage));
-            }
             let updates = report.frames.saturating_sub(1).max(1) as f64;
             line(
-                "",
-                format!("{:>9.3} ms  whole update, mean of a frame", 1e3 * report.update_seconds / updates),
+                "timing",
+                format!("{:>9.3} ms  update (mean of a frame)", 1e3 * report.update_seconds / updates),
             );
+            for stage in &report.stages {
+                line("", format!("{:>9.3} ms    {}", stage.mean_milliseconds, stage.stage));
+            }
         }
         text.trim_end().to_owned()
     }
@@ -146,7 +147,7 @@ mod tests {
             assert!(text.contains(part), "{part} is not in\n{text}");
         }
         assert!(!text.contains("likelihood"));
-        assert!(summary().to_text(true).contains("3.250 ms  likelihood"));
+        assert!(summary().to_text(true).contains("3.250 ms    likelihood"));
     }
 
     #[test]

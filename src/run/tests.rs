@@ -116,7 +116,7 @@ fn an_unreadable_frame_flushes_and_tells_the_last_good_one() {
         (5, "frame 5 (0005.jpg)".into())
     );
     assert!(error.to_string().contains("0006.jpg"));
-    assert!(matches!(error.failure, RunFailure::Source(_)));
+    assert!(matches!(*error.failure, RunFailure::Source(_)));
     assert_eq!(notes.said.last().unwrap(), "flush");
     assert!(!notes.said.contains(&"finish".to_owned()));
 }
@@ -126,7 +126,7 @@ fn an_interruption_ends_the_loop_after_the_frame_at_hand() {
     let flag = AtomicBool::new(false);
     let mut notes = Notes { stop_after: Some((3, &flag)), ..Notes::default() };
     let error = track(&mut frames(9), &[], BOX, &mut notes).unwrap_err();
-    assert!(matches!(error.failure, RunFailure::Interrupted));
+    assert!(matches!(*error.failure, RunFailure::Interrupted));
     assert_eq!(error.frames_done, 3);
     assert_eq!(notes.said, ["1 0", "2 0", "3 0", "flush"]);
 }
@@ -135,7 +135,7 @@ fn an_interruption_ends_the_loop_after_the_frame_at_hand() {
 fn a_frame_that_could_not_be_written_is_not_good() {
     let mut notes = Notes { fail_at: Some(4), ..Notes::default() };
     let error = track(&mut frames(9), &[], BOX, &mut notes).unwrap_err();
-    assert!(matches!(error.failure, RunFailure::Output(OutputError::Closed)));
+    assert!(matches!(*error.failure, RunFailure::Output(OutputError::Closed)));
     assert_eq!(error.frames_done, 3);
 }
 
@@ -144,7 +144,7 @@ fn a_bad_box_and_an_empty_source_have_errors_of_their_own() {
     let error = track(&mut frames(2), &[], Rect { w: 0.0, ..BOX }, &mut Notes::default()).unwrap_err();
     assert!(error.to_string().starts_with("frame 1 (0001.jpg): the box 2,2,0,8"), "{error}");
     let error = track(&mut frames(0), &[], BOX, &mut Notes::default()).unwrap_err();
-    assert!(matches!(error.failure, RunFailure::NoFrames));
+    assert!(matches!(*error.failure, RunFailure::NoFrames));
     assert_eq!((error.frames_done, error.last_good), (0, None));
 }
 

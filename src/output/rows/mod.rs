@@ -157,7 +157,7 @@ impl Row {
             status: event.estimate.status,
             effective_sample_size: event.estimate.effective_sample_size,
             time_s: event.time.map(|time| time.as_secs_f64()),
-            update_ms: options.timing.then(|| event.tracking_time.as_secs_f64() * 1e3),
+            update_ms: options.timing.then_some(event.tracking_time.as_secs_f64() * 1e3),
         }
     }
 
