@@ -2,6 +2,8 @@
 #![deny(missing_docs)]
 
 pub mod bayes;
+pub mod boosting;
+pub mod features;
 pub mod frame;
 pub mod geometry;
 pub mod metrics;

@@ -147,6 +147,11 @@ mod tests {
     fn a_jpeg_cut_anywhere_is_an_error() {
         let whole = jpeg(&gradient(), None);
         assert!(decode(&whole).is_ok());
+        let half = &whole[..whole.len() / 2];
+        assert!(
+            upright(half, ImageFormat::Jpeg).is_ok(),
+            "the decoder has become strict: jpeg_is_whole can go"
+        );
         for kept in [3, 20, whole.len() / 2, whole.len() - 2, whole.len() - 1] {
             assert!(decode(&whole[..kept]).is_err(), "{kept} of {} bytes", whole.len());
         }

@@ -1,4 +1,19 @@
 //! Where frames and ground truth come from. A source streams: it holds one frame at a time.
+//!
+//! [`open`] takes an OTB folder, a folder or glob of images, one image, or a video (through the ffmpeg program);
+//! [`Walker`] renders a sequence that needs no data.
+//!
+//! ```no_run
+//! use infopart::sequence::{OpenOptions, open};
+//!
+//! let options = OpenOptions { target: Some(2), ..OpenOptions::default() };
+//! let mut sequence = open("otb/Jogging", &options)?;
+//! println!("{} starts at {:?}", sequence.name, sequence.ground_truth.first());
+//! while let Some(frame) = sequence.source.next_frame()? {
+//!     println!("{}: {} x {}", frame.label, frame.frame.width(), frame.frame.height());
+//! }
+//! # Ok::<(), infopart::sequence::SequenceError>(())
+//! ```
 
 use std::time::Duration;
 
@@ -17,17 +32,20 @@ mod otb;
 mod range;
 mod size_guard;
 mod video;
+mod walker;
 
 pub use error::{RowProblem, SequenceError};
 pub use ground_truth::{parse_ground_truth, read_ground_truth};
 pub use open::open;
+pub use walker::{Walker, WalkerOptions};
 
 /// A frame and where it stands in its source.
 #[derive(Debug, Clone)]
 pub struct SourceFrame {
-    /// The pixels: grey or RGB.
+    /// The pixels: grey or RGB. 16-bit images are scaled to 8 bits, alpha is dropped, EXIF orientation applied.
     pub frame: Frame,
-    /// Position among the source's frames, counted from 1 (the first frame of a known OTB range is 1).
+    /// Position among the input's frames, counted from 1 (the first frame of a known OTB range is 1). Opened with
+    /// `start: Some(10)`, the first frame delivered has number 10.
     pub number: usize,
     /// What a message calls the frame: its file's name, or `frame N` of a video.
     pub label: String,
@@ -67,7 +85,7 @@ pub struct OpenOptions {
     pub target: Option<usize>,
     /// First frame to deliver, counted from 1.
     pub start: Option<usize>,
-    /// Last frame to deliver, counted from 1.
+    /// Last frame to deliver, counted from 1; beyond the last one it means the last.
     pub end: Option<usize>,
     /// The number of the first pixel in the input's boxes, if it is not the usual one.
     pub origin: Option<Origin>,

@@ -1,6 +1,15 @@
 //! Trackers: the trait every one of them stands behind, and InfoPart.
 
+mod appearance;
+mod confidence;
 mod estimate;
+mod first_box;
+mod infopart;
+mod motion;
+mod parameters;
+mod sampling;
+mod stopwatch;
+mod streams;
 
 use thiserror::Error;
 
@@ -10,6 +19,8 @@ use crate::{
 };
 
 pub use estimate::{BoxWarning, Estimate, StageTime, Status, WeightedBox};
+pub use infopart::InfoPart;
+pub use parameters::{CheckedParameters, ParameterError, Parameters, SCHEMA_VERSION};
 
 /// A single-object tracker. Object-safe and `Send`; it holds no global state, so any number may run at once.
 pub trait Tracker: Send {

@@ -111,11 +111,11 @@ fn dropping_a_video_ends_its_process() {
     let video = VideoFile::open_with(&program, &PathBuf::from("some.mp4"), ALL).unwrap();
     let pid_file = folder.path().join("ffmpeg.pid");
     let written = || fs::read_to_string(&pid_file).ok().filter(|text| text.ends_with('\n'));
-    let pid = std::iter::repeat_with(written).find_map(|text| {
+    let pid = (0..2000).find_map(|_| {
         std::thread::sleep(std::time::Duration::from_millis(5));
-        text
+        written()
     });
     drop(video);
-    let alive = Command::new("kill").args(["-0", pid.unwrap().trim()]).status().unwrap();
-    assert!(!alive.success());
+    let alive = Command::new("kill").args(["-0", pid.unwrap().trim()]).output().unwrap();
+    assert!(!alive.status.success());
 }

@@ -1,0 +1,300 @@
+//! Gentle AdaBoost (Algorithm 4; Friedman, Hastie, Tibshirani 2000) and its score (Algorithm 3).
+//!
+//! Steps:
+//! 1. weights omega_i = 1 / N, or such that both labels weigh the same,
+//! 2. s rounds: over every feature k and every threshold theta, the stump that minimises
+//!    J = sum omega_i (y_i - f(x_i))^2; ties go to the smallest (J, k, theta); if no threshold splits any
+//!    feature, f = sum(omega y) / sum(omega),
+//! 3. add it to F, omega_i *= exp(-y_i f(x_i)), and renormalise.
+//!
+//! The update of an online classifier is a new training on the memory's samples.
+
+use rayon::prelude::*;
+
+use super::{
+    memory::{Label, SampleMemory},
+    stump::{Split, Stump, Weighted, best_split, stump_of},
+};
+
+/// F: a sum of stumps.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct StrongClassifier {
+    stumps: Vec<Stump>,
+}
+
+impl StrongClassifier {
+    /// The stumps, in the order they were found.
+    pub fn stumps(&self) -> &[Stump] {
+        &self.stumps
+    }
+
+    /// conf = F(x), in [-s, s], `value` giving feature k of the sample. Its sign is the label, its size the confidence.
+    pub fn score(&self, value: impl Fn(usize) -> f32) -> f32 {
+        self.stumps.iter().map(|stump| stump.answer(value(stump.feature))).sum()
+    }
+}
+
+/// Trains strong classifiers; holds the scratch that training needs.
+#[derive(Debug, Clone)]
+pub struct GentleAdaBoost {
+    rounds: usize,
+    balanced: bool,
+    sorted: Vec<(f32, u32)>,
+    samples: Vec<Weighted>,
+    splits: Vec<Option<Split>>,
+}
+
+impl GentleAdaBoost {
+    /// A trainer of classifiers of `rounds` stumps. `balanced` starts with both labels weighing the same in total, however
+    /// many samples each has; otherwise every sample starts with 1 / N.
+    pub fn new(rounds: usize, balanced: bool) -> Self {
+        Self { rounds, balanced, sorted: Vec::new(), samples: Vec::new(), splits: Vec::new() }
+    }
+
+    /// Trains on all samples of the memory. Without samples the classifier is empty and scores 0.
+    pub fn train(&mut self, memory: &SampleMemory, out: &mut StrongClassifier) {
+        out.stumps.clear();
+        if memory.is_empty() {
+            return;
+        }
+        self.sort(memory);
+        self.start_weights(memory.labels());
+        for _ in 0..self.rounds {
+            let stump = self.best_stump(memory);
+            self.reweigh(memory, &stump);
+            out.stumps.push(stump);
+        }
+    }
+
+    fn sort(&mut self, memory: &SampleMemory) {
+        let n = memory.len();
+        self.sorted.resize(memory.features() * n, (0.0, 0));
+        self.splits.resize(memory.features(), None);
+        self.sorted.par_chunks_mut(n).enumerate().for_each(|(feature, sorted)| {
+            for (pair, (value, sample)) in sorted.iter_mut().zip(memory.row(feature).iter().zip(0..)) {
+                *pair = (*value, sample);
+            }
+            sorted.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        });
+    }
+
+    /// Step 1.
+    fn start_weights(&mut self, labels: &[Label]) {
+        let targets = labels.iter().filter(|l| **l == Label::Target).count();
+        let of_each = [labels.len() - targets, targets];
+        let present = of_each.iter().filter(|count| **count > 0).count() as f64;
+        self.samples.clear();
+        self.samples.extend(labels.iter().map(|label| {
+            let weight = if self.balanced {
+                1.0 / (present * of_each[usize::from(*label == Label::Target)] as f64)
+            } else {
+                1.0 / labels.len() as f64
+            };
+            Weighted { weight, signed: weight * label.sign() }
+        }));
+    }
+
+    /// Step 2.
+    fn best_stump(&mut self, memory: &SampleMemory) -> Stump {
+        let n = memory.len();
+        let total = self.samples.iter().fold(Weighted::default(), |sum, s| Weighted {
+            weight: sum.weight + s.weight,
+            signed: sum.signed + s.signed,
+        });
+        let samples = &self.samples;
+        self.splits
+            .par_iter_mut()
+            .zip(self.sorted.par_chunks(n))
+            .with_min_len(16)
+            .for_each(|(split, sorted)| *split = best_split(sorted, samples, total));
+        let mut best: Option<(usize, Split)> = None;
+        for (feature, split) in self.splits.iter().enumerate() {
+            if let Some(split) = split
+                && best.is_none_or(|(_, best)| split.gain > best.gain)
+            {
+                best = Some((feature, *split));
+            }
+        }
+        match best {
+            Some((feature, split)) => stump_of(feature, &split, &self.sorted[feature * n..][..n], total),
+            None => {
+                let answer = (total.signed / total.weight) as f32;
+                Stump { feature: 0, threshold: f32::INFINITY, low: answer, high: answer }
+            }
+        }
+    }
+
+    /// Step 3. The floor keeps every weight positive, so that no side of a split weighs nothing.
+    fn reweigh(&mut self, memory: &SampleMemory, stump: &Stump) {
+        let (on_low, on_high) = (f64::from(stump.low), f64::from(stump.high));
+        let factors = [on_low, on_high].map(|f| [f.exp(), (-f).exp()]);
+        let mut sum = 0.0;
+        for ((sample, label), value) in
+            self.samples.iter_mut().zip(memory.labels()).zip(memory.row(stump.feature))
+        {
+            let side = usize::from(*value > stump.threshold);
+            sample.weight *= factors[side][usize::from(*label == Label::Target)];
+            sum += sample.weight;
+        }
+        let floor = f64::MIN_POSITIVE.sqrt();
+        for (sample, label) in self.samples.iter_mut().zip(memory.labels()) {
+            sample.weight = (sample.weight / sum).max(floor);
+            sample.signed = sample.weight * label.sign();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    fn memory_of(samples: &[(Vec<f32>, Label)]) -> SampleMemory {
+        let mut memory = SampleMemory::new(samples[0].0.len(), samples.len(), 0);
+        samples.iter().for_each(|(sample, label)| memory.add(sample, *label));
+        memory
+    }
+
+    fn train(samples: &[(Vec<f32>, Label)], rounds: usize, balanced: bool) -> StrongClassifier {
+        let mut classifier = StrongClassifier::default();
+        GentleAdaBoost::new(rounds, balanced).train(&memory_of(samples), &mut classifier);
+        classifier
+    }
+
+    /// Noisy samples that no single stump separates: the label is whether two features have the same sign.
+    fn exclusive_or(count: usize) -> Vec<(Vec<f32>, Label)> {
+        let mut rng = ChaCha8Rng::seed_from_u64(3);
+        (0..count)
+            .map(|_| {
+                let sample: Vec<f32> = (0..6).map(|_| rng.random_range(-1.0..1.0)).collect();
+                let same = sample[1] + sample[4] > 0.3 * sample[0];
+                (sample, if same { Label::Target } else { Label::Background })
+            })
+            .collect()
+    }
+
+    fn training_error(samples: &[(Vec<f32>, Label)], classifier: &StrongClassifier) -> f64 {
+        let wrong = samples
+            .iter()
+            .filter(|(sample, label)| f64::from(classifier.score(|k| sample[k])) * label.sign() <= 0.0)
+            .count();
+        wrong as f64 / samples.len() as f64
+    }
+
+    /// Algorithm 4 word for word: every feature, every midpoint, J summed over the samples.
+    fn naive(samples: &[(Vec<f32>, Label)], rounds: usize) -> Vec<Stump> {
+        let n = samples.len();
+        let mut weights = vec![1.0 / n as f64; n];
+        let mut stumps = Vec::new();
+        for _ in 0..rounds {
+            let mut best: Option<(f64, Stump)> = None;
+            for feature in 0..samples[0].0.len() {
+                let mut values: Vec<f32> = samples.iter().map(|(s, _)| s[feature]).collect();
+                values.sort_by(f32::total_cmp);
+                values.dedup();
+                for pair in values.windows(2) {
+                    let threshold = pair[0] + (pair[1] - pair[0]) / 2.0;
+                    let answer = |high: bool| {
+                        let (mut signed, mut weight) = (0.0, 0.0);
+                        for ((s, l), w) in samples.iter().zip(&weights) {
+                            if (s[feature] > threshold) == high {
+                                signed += w * l.sign();
+                                weight += w;
+                            }
+                        }
+                        signed / weight
+                    };
+                    let (low, high) = (answer(false), answer(true));
+                    let error: f64 = samples
+                        .iter()
+                        .zip(&weights)
+                        .map(|((s, l), w)| {
+                            w * (l.sign() - if s[feature] > threshold { high } else { low }).powi(2)
+                        })
+                        .sum();
+                    if best.as_ref().is_none_or(|(e, _)| error < *e - 1e-12) {
+                        best =
+                            Some((error, Stump { feature, threshold, low: low as f32, high: high as f32 }));
+                    }
+                }
+            }
+            let (_, stump) = best.unwrap();
+            for ((s, l), w) in samples.iter().zip(&mut weights) {
+                *w *= (-l.sign() * f64::from(stump.answer(s[stump.feature]))).exp();
+            }
+            let sum: f64 = weights.iter().sum();
+            weights.iter_mut().for_each(|w| *w /= sum);
+            stumps.push(stump);
+        }
+        stumps
+    }
+
+    #[test]
+    fn it_finds_the_stumps_of_the_algorithm_written_out() {
+        let samples = exclusive_or(60);
+        let found = train(&samples, 8, false);
+        for (found, expected) in found.stumps().iter().zip(naive(&samples, 8)) {
+            assert_eq!((found.feature, found.threshold), (expected.feature, expected.threshold));
+            assert!((found.low - expected.low).abs() < 1e-5 && (found.high - expected.high).abs() < 1e-5);
+        }
+    }
+
+    #[test]
+    fn the_training_error_falls_with_the_rounds() {
+        let samples = exclusive_or(300);
+        let errors: Vec<f64> =
+            [1, 5, 60].iter().map(|r| training_error(&samples, &train(&samples, *r, false))).collect();
+        assert!(errors[0] > errors[1] && errors[1] > errors[2], "{errors:?}");
+        assert!(errors[2] < 0.03, "{errors:?}");
+    }
+
+    #[test]
+    fn ties_go_to_the_smallest_feature_and_threshold() {
+        let samples = vec![
+            (vec![0.0, 0.0, 0.0], Label::Background),
+            (vec![0.0, 1.0, 1.0], Label::Target),
+            (vec![0.0, 2.0, 2.0], Label::Background),
+        ];
+        let stump = train(&samples, 1, false).stumps()[0];
+        assert_eq!((stump.feature, stump.threshold), (1, 0.5));
+    }
+
+    #[test]
+    fn samples_that_nothing_splits_get_the_mean_label() {
+        let samples =
+            vec![(vec![1.0], Label::Target), (vec![1.0], Label::Target), (vec![1.0], Label::Background)];
+        let classifier = train(&samples, 2, false);
+        assert!((classifier.stumps()[0].answer(1.0) - 1.0 / 3.0).abs() < 1e-6);
+        assert!(classifier.stumps()[0].low.is_finite());
+    }
+
+    #[test]
+    fn balanced_labels_weigh_the_same_however_many_there_are() {
+        let mut samples = vec![(vec![0.0], Label::Target)];
+        samples.extend((0..9).map(|_| (vec![0.0], Label::Background)));
+        assert!(train(&samples, 1, true).score(|_| 0.0).abs() < 1e-6);
+        assert!((train(&samples, 1, false).score(|_| 0.0) + 0.8).abs() < 1e-6);
+    }
+
+    #[test]
+    fn one_label_alone_is_learnt_and_no_sample_gives_no_classifier() {
+        let only = vec![(vec![0.0], Label::Target), (vec![3.0], Label::Target)];
+        for balanced in [false, true] {
+            assert_eq!(train(&only, 3, balanced).score(|_| 1.0), 3.0);
+        }
+        let mut classifier = StrongClassifier::default();
+        GentleAdaBoost::new(3, true).train(&SampleMemory::new(4, 2, 2), &mut classifier);
+        assert_eq!(classifier.score(|_| 1.0), 0.0);
+    }
+
+    #[test]
+    fn training_for_long_on_separable_samples_stays_finite() {
+        let samples: Vec<_> = (0..20)
+            .map(|i| (vec![i as f32], if i < 10 { Label::Background } else { Label::Target }))
+            .collect();
+        let classifier = train(&samples, 2000, true);
+        assert!(classifier.stumps().iter().all(|s| s.low.is_finite() && s.high.is_finite()));
+        assert!((classifier.score(|_| 15.0) - 2000.0).abs() < 1.0);
+    }
+}

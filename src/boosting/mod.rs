@@ -1,0 +1,9 @@
+//! Gentle AdaBoost over regression stumps, and the memory of samples it is trained on.
+
+mod gentle;
+mod memory;
+mod stump;
+
+pub use gentle::{GentleAdaBoost, StrongClassifier};
+pub use memory::{Label, SampleMemory};
+pub use stump::Stump;

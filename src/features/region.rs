@@ -1,0 +1,414 @@
+//! Integral images of a search region.
+//!
+//! Steps, each frame:
+//! 1. cut the region out of the frame, repeating edge pixels outside it, averaging `step` x `step` pixels to a cell,
+//! 2. one integral image a colour channel (exact, u32),
+//! 3. gradient of luminance by central differences; its magnitude, split between the two nearest of 8 unsigned
+//!    orientation bins, goes into 8 interleaved integral images (exact, u32).
+//!
+//! The cost depends on the region alone, never on the frame.
+
+use crate::{
+    features::hog::BINS,
+    frame::{FrameView, PixelFormat},
+    geometry::Rect,
+};
+
+/// Colour channels that Haar-like features may read.
+pub const CHANNELS: usize = 3;
+
+/// A region of a frame in whole pixels. It may reach beyond the frame, where edge pixels are repeated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SearchRegion {
+    /// Left edge in frame pixels.
+    pub x: i64,
+    /// Top edge in frame pixels.
+    pub y: i64,
+    /// Width in cells, >= 1.
+    pub width: usize,
+    /// Height in cells, >= 1.
+    pub height: usize,
+    /// Frame pixels along a cell's side, >= 1.
+    pub step: usize,
+}
+
+impl SearchRegion {
+    /// The smallest region of cells of `step` pixels that holds `box_in_frame` with a cell to spare on every side.
+    pub fn around(box_in_frame: Rect, step: usize) -> Self {
+        let step_px = step as f64;
+        let (x, y) = (box_in_frame.x.floor() - step_px, box_in_frame.y.floor() - step_px);
+        let cells = |from: f64, to: f64| ((to - from) / step_px).ceil().max(1.0) as usize + 1;
+        Self {
+            x: x as i64,
+            y: y as i64,
+            width: cells(x, box_in_frame.right()),
+            height: cells(y, box_in_frame.bottom()),
+            step,
+        }
+    }
+}
+
+/// A box in cells of a [`RegionIntegrals`], from its top left corner.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BoxInRegion {
+    /// Left edge, cells.
+    pub x: f32,
+    /// Top edge, cells.
+    pub y: f32,
+    /// Width, cells.
+    pub w: f32,
+    /// Height, cells.
+    pub h: f32,
+}
+
+/// Integral images of a search region: colour channels and orientation bins. Reused from frame to frame.
+#[derive(Debug, Clone)]
+pub struct RegionIntegrals {
+    region: SearchRegion,
+    channels: usize,
+    cells: [Vec<u8>; CHANNELS],
+    colour: [Vec<u32>; CHANNELS],
+    orientation: Vec<[u32; BINS]>,
+    rows: GradientRows,
+}
+
+/// Scratch of one row of gradients.
+#[derive(Debug, Clone, Default)]
+struct GradientRows {
+    luminance: [Vec<f32>; 3],
+    magnitude: Vec<f32>,
+    position: Vec<f32>,
+}
+
+impl Default for RegionIntegrals {
+    fn default() -> Self {
+        Self {
+            region: SearchRegion { x: 0, y: 0, width: 0, height: 0, step: 1 },
+            channels: 1,
+            cells: Default::default(),
+            colour: Default::default(),
+            orientation: Vec::new(),
+            rows: GradientRows::default(),
+        }
+    }
+}
+
+impl RegionIntegrals {
+    /// Colour channels: 1 for a grey frame, else 3.
+    pub fn channels(&self) -> usize {
+        self.channels
+    }
+
+    /// The region that was computed last.
+    pub fn region(&self) -> SearchRegion {
+        self.region
+    }
+
+    /// Computes the integral images of `region` (steps 1 to 3). Allocates only when the region outgrows all before it.
+    pub fn compute(&mut self, frame: &FrameView<'_>, region: SearchRegion) {
+        self.region = region;
+        self.channels = if frame.format() == PixelFormat::Gray { 1 } else { CHANNELS };
+        self.cut(frame);
+        self.integrate_colour();
+        self.integrate_orientation();
+    }
+
+    /// A box of the frame in this region's cells.
+    pub fn to_region(&self, box_in_frame: Rect) -> BoxInRegion {
+        let per_pixel = 1.0 / self.region.step as f64;
+        BoxInRegion {
+            x: ((box_in_frame.x - self.region.x as f64) * per_pixel) as f32,
+            y: ((box_in_frame.y - self.region.y as f64) * per_pixel) as f32,
+            w: (box_in_frame.w * per_pixel) as f32,
+            h: (box_in_frame.h * per_pixel) as f32,
+        }
+    }
+
+    /// The grid column nearest to `x` cells, inside the region.
+    pub(crate) fn column(&self, x: f32) -> usize {
+        nearest_line(x, self.region.width)
+    }
+
+    /// The grid row nearest to `y` cells, inside the region.
+    pub(crate) fn row(&self, y: f32) -> usize {
+        nearest_line(y, self.region.height)
+    }
+
+    /// Integral image of a colour channel: entry (row r, column c) at `r * stride + c` sums the cells above and left.
+    pub(crate) fn colour(&self, channel: usize) -> &[u32] {
+        &self.colour[channel.min(self.channels - 1)]
+    }
+
+    /// Integral image of the orientation bins, laid out like [`colour`](Self::colour).
+    pub(crate) fn orientation(&self) -> &[[u32; BINS]] {
+        &self.orientation
+    }
+
+    /// Entries in a row of an integral image.
+    pub(crate) fn stride(&self) -> usize {
+        self.region.width + 1
+    }
+
+    /// Step 1.
+    fn cut(&mut self, frame: &FrameView<'_>) {
+        let SearchRegion { width, height, .. } = self.region;
+        for cells in &mut self.cells[..self.channels] {
+            cells.clear();
+            cells.resize(width * height, 0);
+        }
+        if self.region.step == 1 { self.cut_pixels(frame) } else { self.cut_averages(frame) }
+    }
+
+    fn cut_pixels(&mut self, frame: &FrameView<'_>) {
+        let SearchRegion { x, y, width, height, .. } = self.region;
+        let size = frame.format().bytes_per_pixel();
+        let (last_x, last_y) = (frame.width() as i64 - 1, frame.height() as i64 - 1);
+        // Columns [inside_from, inside_to) of the region lie in the frame; the others repeat its edge.
+        let inside_from = (-x).clamp(0, width as i64) as usize;
+        let inside_to = (last_x + 1 - x).clamp(inside_from as i64, width as i64) as usize;
+        for (channel, offset) in frame.format().rgb_offsets().into_iter().take(self.channels).enumerate() {
+            for row in 0..height {
+                let pixels = frame.row((y + row as i64).clamp(0, last_y) as usize);
+                let cells = &mut self.cells[channel][row * width..][..width];
+                cells[..inside_from].fill(pixels[offset]);
+                cells[inside_to..].fill(pixels[last_x as usize * size + offset]);
+                if inside_from < inside_to {
+                    let first = (x + inside_from as i64) as usize * size;
+                    let inside = pixels[first..].chunks_exact(size);
+                    for (cell, pixel) in cells[inside_from..inside_to].iter_mut().zip(inside) {
+                        *cell = pixel[offset];
+                    }
+                }
+            }
+        }
+    }
+
+    fn cut_averages(&mut self, frame: &FrameView<'_>) {
+        let SearchRegion { x, y, width, height, step } = self.region;
+        let size = frame.format().bytes_per_pixel();
+        let offsets = frame.format().rgb_offsets();
+        let (last_x, last_y) = (frame.width() as i64 - 1, frame.height() as i64 - 1);
+        let pixels_per_cell = (step * step) as u32;
+        for row in 0..height {
+            for column in 0..width {
+                let mut sums = [0u32; CHANNELS];
+                for dy in 0..step {
+                    let pixels = frame.row((y + (row * step + dy) as i64).clamp(0, last_y) as usize);
+                    for dx in 0..step {
+                        let at = (x + (column * step + dx) as i64).clamp(0, last_x) as usize * size;
+                        for (sum, offset) in sums.iter_mut().zip(offsets).take(self.channels) {
+                            *sum += u32::from(pixels[at + offset]);
+                        }
+                    }
+                }
+                for (cells, sum) in self.cells.iter_mut().zip(sums).take(self.channels) {
+                    cells[row * width + column] = ((sum + pixels_per_cell / 2) / pixels_per_cell) as u8;
+                }
+            }
+        }
+    }
+
+    /// Step 2.
+    fn integrate_colour(&mut self) {
+        let SearchRegion { width, height, .. } = self.region;
+        let stride = width + 1;
+        for (cells, integral) in self.cells.iter().zip(&mut self.colour).take(self.channels) {
+            integral.resize(stride * (height + 1), 0);
+            integral[..stride].fill(0);
+            for (row, cells) in cells.chunks_exact(width).enumerate() {
+                let (above, below) = integral[row * stride..].split_at_mut(stride);
+                let mut sum = 0;
+                below[0] = 0;
+                for ((out, up), &cell) in below[1..].iter_mut().zip(&above[1..]).zip(cells) {
+                    sum += u32::from(cell);
+                    *out = up + sum;
+                }
+            }
+        }
+    }
+
+    /// Step 3.
+    fn integrate_orientation(&mut self) {
+        let SearchRegion { width, height, .. } = self.region;
+        let stride = width + 1;
+        self.orientation.resize(stride * (height + 1), [0; BINS]);
+        self.orientation[..stride].fill([0; BINS]);
+        self.rows.resize(width);
+        self.load_luminance(0, 1);
+        self.load_luminance(0, 2);
+        for row in 0..height {
+            self.rows.luminance.rotate_left(1);
+            self.load_luminance((row + 1).min(height - 1), 2);
+            self.rows.differentiate();
+            let (above, below) = self.orientation[row * stride..].split_at_mut(stride);
+            self.rows.accumulate(&above[1..], below);
+        }
+    }
+
+    fn load_luminance(&mut self, row: usize, slot: usize) {
+        let width = self.region.width;
+        let at = row * width..(row + 1) * width;
+        let out = &mut self.rows.luminance[slot];
+        let [red, green, blue] = &self.cells;
+        if self.channels == 1 {
+            for (out, &grey) in out.iter_mut().zip(&red[at]) {
+                *out = 4.0 * f32::from(grey);
+            }
+        } else {
+            let cells = red[at.clone()].iter().zip(&green[at.clone()]).zip(&blue[at]);
+            for (out, ((&r, &g), &b)) in out.iter_mut().zip(cells) {
+                *out = f32::from(u16::from(r) + 2 * u16::from(g) + u16::from(b));
+            }
+        }
+    }
+}
+
+impl GradientRows {
+    fn resize(&mut self, width: usize) {
+        for row in self.luminance.iter_mut().chain([&mut self.magnitude, &mut self.position]) {
+            row.resize(width, 0.0);
+        }
+    }
+
+    /// Gradient magnitude and orientation (as a position among the bins, in [-0.5, 7.5]) of the middle row.
+    fn differentiate(&mut self) {
+        let [above, middle, below] = &self.luminance;
+        let width = middle.len();
+        let outputs = self.magnitude.iter_mut().zip(&mut self.position).enumerate();
+        for (i, (magnitude, position)) in outputs {
+            let dx = middle[(i + 1).min(width - 1)] - middle[i.saturating_sub(1)];
+            let dy = below[i] - above[i];
+            *magnitude = (dx * dx + dy * dy).sqrt();
+            *position = orientation(dx, dy) * BINS as f32 - 0.5;
+        }
+    }
+
+    /// Adds the row's magnitudes, split between the two nearest bins, to the integral row `above`; `below` has one
+    /// leading entry more.
+    fn accumulate(&self, above: &[[u32; BINS]], below: &mut [[u32; BINS]]) {
+        let mut sums = [0u32; BINS];
+        below[0] = sums;
+        let gradients = self.magnitude.iter().zip(&self.position);
+        for ((out, up), (&magnitude, &position)) in below[1..].iter_mut().zip(above).zip(gradients) {
+            let lower = position.floor();
+            let total = (magnitude + 0.5) as u32;
+            let upper_share = (magnitude * (position - lower) + 0.5) as u32;
+            let bin = lower as i32 as usize;
+            sums[bin.wrapping_add(1) % BINS] += upper_share;
+            sums[bin % BINS] += total - upper_share.min(total);
+            for b in 0..BINS {
+                out[b] = up[b] + sums[b];
+            }
+        }
+    }
+}
+
+/// Orientation of a gradient as a share of the half turn, in [0, 1): 0 is horizontal, 0.5 vertical, sign ignored.
+/// Within 3e-5 of atan2.
+fn orientation(dx: f32, dy: f32) -> f32 {
+    let (ax, ay) = (dx.abs(), dy.abs());
+    let ratio = ax.min(ay) / ax.max(ay).max(1e-9);
+    // Minimax polynomial for atan(ratio) / pi on [0, 1].
+    let square = ratio * ratio;
+    let eighth =
+        ratio * (0.318_059_64 + square * (-0.102_233_14 + square * (0.046_557_333 - square * 0.012_409_725)));
+    let quarter = if ay > ax { 0.5 - eighth } else { eighth };
+    let half = if (dx < 0.0) != (dy < 0.0) { 1.0 - quarter } else { quarter };
+    if half >= 1.0 { 0.0 } else { half }
+}
+
+fn nearest_line(at: f32, lines: usize) -> usize {
+    ((at + 0.5).max(0.0) as usize).min(lines)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{features::reference, frame::Frame};
+
+    fn textured(width: usize, height: usize, format: PixelFormat) -> Frame {
+        reference::textured_frame(width, height, format)
+    }
+
+    #[test]
+    fn colour_integrals_equal_naive_sums_even_beyond_the_frame() {
+        for format in [PixelFormat::Gray, PixelFormat::Rgb, PixelFormat::Bgra] {
+            let frame = textured(13, 9, format);
+            for (x, y, width, height) in [(-4, -3, 21, 16), (2, 1, 5, 4), (30, 2, 4, 3), (-9, -9, 3, 3)] {
+                let mut integrals = RegionIntegrals::default();
+                let region = SearchRegion { x, y, width, height, step: 1 };
+                integrals.compute(&frame.view(), region);
+                for channel in 0..integrals.channels() {
+                    for r in 0..=height {
+                        for c in 0..=width {
+                            let mut sum = 0;
+                            for j in 0..r as i64 {
+                                for i in 0..c as i64 {
+                                    sum += u32::from(reference::sample(&frame.view(), x + i, y + j)[channel]);
+                                }
+                            }
+                            assert_eq!(integrals.colour(channel)[r * integrals.stride() + c], sum);
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_cell_of_two_by_two_pixels_is_their_rounded_mean() {
+        let frame = Frame::new(vec![1, 2, 3, 4, 10, 20, 30, 43], 4, 2, PixelFormat::Gray).unwrap();
+        let mut integrals = RegionIntegrals::default();
+        integrals.compute(&frame.view(), SearchRegion { x: 0, y: 0, width: 2, height: 1, step: 2 });
+        assert_eq!(integrals.colour(0), &[0, 0, 0, 0, 8, 8 + 20]);
+    }
+
+    #[test]
+    fn the_orientation_bins_hold_the_whole_gradient_of_each_cell() {
+        let frame = textured(20, 17, PixelFormat::Rgb);
+        let mut integrals = RegionIntegrals::default();
+        let region = SearchRegion { x: -2, y: -2, width: 24, height: 21, step: 1 };
+        integrals.compute(&frame.view(), region);
+        let naive = reference::gradient_bins(&frame.view(), region);
+        let stride = integrals.stride();
+        for r in 0..=region.height {
+            for c in 0..=region.width {
+                let found = integrals.orientation()[r * stride + c];
+                let mut expected = [0.0f64; BINS];
+                for row in &naive[..r] {
+                    for cell in &row[..c] {
+                        (0..BINS).for_each(|b| expected[b] += f64::from(cell[b]));
+                    }
+                }
+                for (found, expected) in found.iter().zip(expected) {
+                    // Rounding to whole units: at most 1 a cell.
+                    assert!((f64::from(*found) - expected).abs() <= 0.01 * expected + (r * c) as f64);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn orientation_follows_the_arctangent_and_ignores_sign() {
+        for i in 0..720 {
+            let angle = f64::from(i) * std::f64::consts::PI / 360.0;
+            let found = f64::from(orientation((100.0 * angle.cos()) as f32, (100.0 * angle.sin()) as f32));
+            let expected = (angle / std::f64::consts::PI).rem_euclid(1.0);
+            let difference = (found - expected).abs();
+            assert!(difference.min(1.0 - difference) < 3e-5, "{i}: {found} {expected}");
+        }
+        assert_eq!(orientation(0.0, 0.0), 0.0);
+    }
+
+    #[test]
+    fn a_region_around_a_box_holds_it_with_a_cell_to_spare() {
+        for step in [1, 2, 3] {
+            let target = Rect::new(-3.4, 10.6, 20.1, 7.7);
+            let region = SearchRegion::around(target, step);
+            let (right, bottom) = (region.width * step, region.height * step);
+            assert!(region.x as f64 + step as f64 <= target.x && region.y as f64 + step as f64 <= target.y);
+            assert!((region.x as f64 + right as f64) >= target.right());
+            assert!((region.y as f64 + bottom as f64) >= target.bottom());
+        }
+    }
+}

@@ -1,0 +1,166 @@
+//! How the person, the camera and the light move.
+
+use std::f64::consts::{PI, TAU};
+
+use super::{WalkerOptions, figure::ASPECT};
+use crate::geometry::Rect;
+
+/// The walk takes this many frames from side to side; shorter sequences stop on the way.
+const FRAMES_OF_A_WALK: usize = 150;
+
+/// Height of the standing person at the start, of a frame 240 pixels high.
+const HEIGHT: f64 = 84.0;
+
+/// Where the ground meets the horizon and how far below it the person first stands, in the same measure.
+const HORIZON: f64 = 62.0;
+const BELOW_HORIZON: f64 = 106.0;
+
+/// Two steps, in body heights.
+const STRIDE: f64 = 0.72;
+
+/// How much faster than the street the occluder moves, being nearer.
+const PARALLAX: f64 = 1.25;
+
+/// When the person is behind the occluder, as a share of the walk.
+const OCCLUDED_AT: f64 = 0.56;
+
+/// How many frames the person's box is wholly behind the occluder.
+const OCCLUDED_FRAMES: f64 = 7.0;
+
+/// One frame's state of the world. Lengths in pixels of the frame.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Moment {
+    /// Where the camera's window lies in the scene.
+    pub(super) camera: (f64, f64),
+    /// Where the person stands in the frame.
+    pub(super) foot: (f64, f64),
+    /// The person's height.
+    pub(super) height: f64,
+    /// Angle in the cycle of two steps, radians.
+    pub(super) phase: f64,
+    /// Brightness: 1 is full light.
+    pub(super) gain: f64,
+    /// Left and right edge of the occluder.
+    pub(super) occluder: Option<(f64, f64)>,
+}
+
+impl Moment {
+    /// The box of the standing person.
+    pub(super) fn box_in_frame(&self) -> Rect {
+        let width = ASPECT * self.height;
+        Rect::new(self.foot.0 - width / 2.0, self.foot.1 - self.height, width, self.height)
+    }
+}
+
+/// What the camera may move to the right and what it may shake, pixels.
+pub(super) fn camera_reach(options: &WalkerOptions) -> (f64, f64) {
+    let unit = unit(options);
+    (0.3 * options.width as f64 + 12.0 * unit, 8.0 * unit)
+}
+
+/// Pixels of a length that is 1 in a frame 240 pixels high.
+pub(super) fn unit(options: &WalkerOptions) -> f64 {
+    options.height as f64 / 240.0
+}
+
+/// Every frame's state.
+pub(super) fn moments(options: &WalkerOptions) -> Vec<Moment> {
+    let last = options.frames.max(FRAMES_OF_A_WALK) - 1;
+    let occluder_width = occluder_width(options, last);
+    let mut phase = 0.6;
+    let mut walked = None;
+    let times = (0..options.frames).map(|index| index as f64 / last as f64);
+    times
+        .map(|t| {
+            let (foot, height, camera) = (foot(options, t), height(options, t), camera(options, t));
+            let street = foot.0 + camera.0;
+            phase += TAU * (street - walked.unwrap_or(street)) / (STRIDE * height);
+            walked = Some(street);
+            let occluder = options.occluder.then(|| {
+                let centre = occluder_centre(options, t);
+                (centre - occluder_width / 2.0, centre + occluder_width / 2.0)
+            });
+            Moment { camera, foot, height, phase, gain: 0.825 + 0.175 * (TAU * t).cos(), occluder }
+        })
+        .collect()
+}
+
+fn growth(t: f64) -> f64 {
+    1.0 + 0.35 * t * t * (3.0 - 2.0 * t)
+}
+
+fn height(options: &WalkerOptions, t: f64) -> f64 {
+    unit(options) * HEIGHT * growth(t)
+}
+
+fn foot(options: &WalkerOptions, t: f64) -> (f64, f64) {
+    let across = t + 0.05 * (TAU * t).sin();
+    (options.width as f64 * (0.15 + 0.67 * across), unit(options) * (HORIZON + BELOW_HORIZON * growth(t)))
+}
+
+fn camera(options: &WalkerOptions, t: f64) -> (f64, f64) {
+    let unit = unit(options);
+    let pan = 0.3 * options.width as f64 * t
+        + unit * (4.0 + 3.0 * (3.4 * PI * t).sin() + 0.5 * (23.0 * TAU * t).sin());
+    (pan, unit * (4.0 + 1.8 * (2.3 * TAU * t).sin() + 0.5 * (17.0 * TAU * t + 1.0).sin()))
+}
+
+fn occluder_centre(options: &WalkerOptions, t: f64) -> f64 {
+    let moved = camera(options, t).0 - camera(options, OCCLUDED_AT).0;
+    foot(options, OCCLUDED_AT).0 - PARALLAX * moved
+}
+
+fn occluder_width(options: &WalkerOptions, last: usize) -> f64 {
+    let half = OCCLUDED_FRAMES / 2.0 / last as f64;
+    let (before, after) = (OCCLUDED_AT - half, OCCLUDED_AT + half);
+    let passed = |t| foot(options, t).0 - occluder_centre(options, t);
+    ASPECT * height(options, OCCLUDED_AT) + passed(after) - passed(before)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn all(occluder: bool) -> Vec<Moment> {
+        moments(&WalkerOptions { occluder, ..WalkerOptions::default() })
+    }
+
+    #[test]
+    fn size_and_light_change_as_promised() {
+        let moments = all(false);
+        let (first, last) = (moments[0], moments[149]);
+        assert!((first.height - 84.0).abs() < 1e-9 && (last.height / first.height - 1.35).abs() < 1e-9);
+        let darkest = moments.iter().map(|moment| moment.gain).fold(1.0, f64::min);
+        assert!((darkest - 0.65).abs() < 1e-3 && first.gain == 1.0 && (last.gain - 1.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn the_person_stays_in_the_frame_and_walks_without_jumps() {
+        let moments = all(false);
+        for pair in moments.windows(2) {
+            let (before, after) = (pair[0].box_in_frame(), pair[1].box_in_frame());
+            assert!(after.x > 0.0 && after.y > 0.0 && after.right() < 320.0 && after.bottom() < 240.0);
+            assert!(after.centre_distance(&before) < 3.0 && pair[1].phase > pair[0].phase);
+        }
+        let steps = (moments[149].phase - moments[0].phase) / PI;
+        assert!((6.0..12.0).contains(&steps), "{steps} steps");
+    }
+
+    #[test]
+    fn the_occluder_hides_the_box_for_a_few_frames() {
+        let hidden = all(true).into_iter().filter(|moment| {
+            let (left, right) = moment.occluder.unwrap();
+            let box_in_frame = moment.box_in_frame();
+            left <= box_in_frame.x && box_in_frame.right() <= right
+        });
+        assert!((6..=8).contains(&hidden.count()));
+        assert!(all(false).iter().all(|moment| moment.occluder.is_none()));
+    }
+
+    #[test]
+    fn a_short_sequence_walks_no_faster() {
+        let short = moments(&WalkerOptions { frames: 10, occluder: true, ..WalkerOptions::default() });
+        assert_eq!(short.len(), 10);
+        assert_eq!(short[9].box_in_frame(), all(true)[9].box_in_frame());
+    }
+}

@@ -1,0 +1,100 @@
+//! Algorithm 2: the likelihood of a frame given a hypothesis.
+//!
+//! Steps:
+//! 1. the hypothesis in the search region's cells (features are evaluated scaled instead of resizing a crop),
+//! 2. HOG2 and the Haar-like features that the classifier reads,
+//! 3. conf = F(Haar2) (Algorithm 3),
+//! 4. likelihood = exp(alpha * conf - gamma * ||HOG1 - HOG2||^2).
+
+use crate::{
+    bayes::Observation,
+    boosting::{StrongClassifier, Stump},
+    features::{
+        haar::HaarFeature,
+        hog::Hog,
+        region::{BoxInRegion, RegionIntegrals},
+    },
+    geometry::Rect,
+};
+
+use super::{
+    motion::{PartState, box_of},
+    parameters::Parameters,
+};
+
+/// What the target looks like.
+#[derive(Debug, Clone)]
+pub(super) struct Appearance {
+    /// The Haar-like features that samples are made of.
+    pub pool: Vec<HaarFeature>,
+    /// HOG1.
+    pub template: Hog,
+    /// The classifier's stumps, each with the feature it reads.
+    stumps: Vec<(HaarFeature, Stump)>,
+    score_weight: f32,
+    hog_weight: f32,
+}
+
+/// How well a box fits.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Fit {
+    /// conf: the classifier's score, in [-s, s].
+    pub score: f32,
+    /// Squared HOG distance to the template, in [0, 2].
+    pub hog_distance: f32,
+}
+
+impl Appearance {
+    pub fn new(parameters: &Parameters, pool: Vec<HaarFeature>, template: Hog) -> Self {
+        let per_score = if parameters.score_per_root_stump { (parameters.stumps as f64).sqrt() } else { 1.0 };
+        Self {
+            pool,
+            template,
+            stumps: Vec::with_capacity(parameters.stumps),
+            score_weight: (parameters.score_weight / per_score) as f32,
+            hog_weight: parameters.hog_weight as f32,
+        }
+    }
+
+    /// Takes a newly trained classifier.
+    pub fn set_classifier(&mut self, classifier: &StrongClassifier) {
+        self.stumps.clear();
+        self.stumps.extend(classifier.stumps().iter().map(|stump| (self.pool[stump.feature], *stump)));
+    }
+
+    /// The whole feature vector of a box, for training.
+    pub fn describe(&self, integrals: &RegionIntegrals, part: &Rect, out: &mut Vec<f32>) {
+        let hypothesis = integrals.to_region(*part);
+        out.clear();
+        out.extend(self.pool.iter().map(|feature| feature.evaluate(integrals, &hypothesis)));
+    }
+
+    /// Steps 2 and 3.
+    pub fn fit(&self, integrals: &RegionIntegrals, hypothesis: &BoxInRegion) -> Fit {
+        let score = self
+            .stumps
+            .iter()
+            .map(|(feature, stump)| stump.answer(feature.evaluate(integrals, hypothesis)))
+            .sum();
+        let hog_distance = self.template.squared_distance(&Hog::of(integrals, hypothesis));
+        Fit { score, hog_distance }
+    }
+}
+
+/// A frame as an observation of the part's state.
+pub(super) struct FrameObservation<'a> {
+    /// The search region.
+    pub integrals: &'a RegionIntegrals,
+    /// What is looked for.
+    pub appearance: &'a Appearance,
+    /// h / w of the part.
+    pub aspect: f64,
+}
+
+impl Observation<3> for FrameObservation<'_> {
+    fn log_likelihood(&self, state: &PartState) -> f64 {
+        let hypothesis = self.integrals.to_region(box_of(state, self.aspect));
+        let fit = self.appearance.fit(self.integrals, &hypothesis);
+        f64::from(self.appearance.score_weight * fit.score - self.appearance.hog_weight * fit.hog_distance)
+    }
+}
