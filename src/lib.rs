@@ -8,5 +8,6 @@ pub mod frame;
 pub mod geometry;
 pub mod metrics;
 pub mod output;
+pub mod run;
 pub mod sequence;
 pub mod tracker;

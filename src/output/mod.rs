@@ -1,14 +1,37 @@
 //! What comes out of the loop. Everything that watches it is an [`Observer`].
 
-use std::{path::PathBuf, time::Duration};
-
-use thiserror::Error;
+use std::time::Duration;
 
 use crate::{
     frame::FrameView,
     geometry::Rect,
-    tracker::{Estimate, Tracker},
+    tracker::{BoxWarning, Estimate, Tracker},
 };
+
+mod annotate;
+mod canvas;
+mod contact_sheet;
+mod destination;
+mod error;
+mod partial_file;
+mod pictures;
+mod progress;
+mod rows;
+mod summary;
+#[cfg(test)]
+pub(crate) mod testing;
+mod video;
+
+pub use annotate::annotate;
+pub use contact_sheet::{ContactSheet, SheetSampler, Tile};
+pub use destination::{Destination, StandardOutput};
+pub use error::OutputError;
+pub use partial_file::PartialFile;
+pub use pictures::PictureFolder;
+pub use progress::Progress;
+pub use rows::{RowFormat, RowOptions, RowWriter};
+pub use summary::Summary;
+pub use video::{VIDEO_EXTENSIONS, VideoWriter};
 
 /// What happened in one frame of the loop.
 #[non_exhaustive]
@@ -27,6 +50,8 @@ pub struct FrameEvent<'a> {
     pub ground_truth: Option<Rect>,
     /// The tracker, for its hypotheses and stage times.
     pub tracker: &'a dyn Tracker,
+    /// What is odd about the first box; empty in every frame but the first.
+    pub warnings: &'a [BoxWarning],
     /// Wall time of `init` (first frame) or `update`.
     pub tracking_time: Duration,
     /// Wall time of getting the frame from its source.
@@ -48,18 +73,13 @@ pub trait Observer {
     fn finish(&mut self) -> Result<(), OutputError> {
         Ok(())
     }
-}
 
-/// Output that could not be written.
-#[derive(Debug, Error)]
-#[non_exhaustive]
-pub enum OutputError {
-    /// The file system refused.
-    #[error("{path}: cannot be written: {source}; choose another path or make room", path = path.display())]
-    Io {
-        /// The file or folder.
-        path: PathBuf,
-        /// The system's reason.
-        source: std::io::Error,
-    },
+    /// Called instead of [`finish`](Self::finish) if the loop stopped early, so that what was seen so far is
+    /// kept, marked as incomplete.
+    ///
+    /// # Errors
+    /// [`OutputError`], if what was seen so far cannot be kept.
+    fn flush(&mut self) -> Result<(), OutputError> {
+        Ok(())
+    }
 }

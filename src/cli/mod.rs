@@ -1,0 +1,60 @@
+//! The command line: one file a subcommand, flags turned into checked options, errors told in one place.
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+mod config;
+mod exit;
+mod interrupt;
+mod outputs;
+mod parameters;
+mod track;
+mod values;
+
+const EXAMPLES_AND_EXIT_CODES: &str = "\
+Examples:
+  infopart track Crossing                           an OTB folder, first box from its ground truth
+  infopart track video.mp4 --init 120,80,40,110     a video, first box given
+  infopart track 'shots/*.png' --init 5,9,32,80 --out boxes.csv --annotate seen.mp4
+  infopart config > my.toml                         every parameter, to edit and pass with --config
+
+Exit codes:
+  0    success
+  1    internal failure
+  2    bad input: a flag, a file or a box
+  130  interrupted with Ctrl-C";
+
+/// Tracks one person, or any other target, through a video.
+#[derive(Debug, Parser)]
+#[command(name = "infopart", version, after_help = EXAMPLES_AND_EXIT_CODES)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Track a target from its box in the first frame
+    #[command(after_help = EXAMPLES_AND_EXIT_CODES)]
+    Track(Box<track::TrackArgs>),
+    /// Print every parameter with its meaning and unit, as a TOML that --config takes
+    Config(config::ConfigArgs),
+}
+
+/// Runs the program on its command line.
+pub fn main() -> ExitCode {
+    let outcome = match Cli::parse().command {
+        Command::Track(args) => track::track(&args),
+        Command::Config(args) => config::config(&args),
+    };
+    exit::report(outcome)
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn the_command_line_is_consistent() {
+        <super::Cli as clap::CommandFactory>::command().debug_assert();
+    }
+}

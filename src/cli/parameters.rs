@@ -1,0 +1,58 @@
+//! The tracker's parameters: a preset, over it the keys of --config, over these the flags.
+
+use std::{fs, path::PathBuf};
+
+use anyhow::{Context, Result};
+use clap::Args;
+use infopart::{
+    geometry::Region,
+    tracker::{CheckedParameters, Parameters},
+};
+
+use super::{exit::BadInput, values::parse_count};
+
+#[derive(Debug, Args)]
+pub struct ParameterArgs {
+    /// What to track of the box: `part` (the upper 5/8), `whole`, or the upper fraction, such as 0.5 or 5/8
+    #[arg(long, value_name = "part|whole|FRACTION")]
+    region: Option<Region>,
+    /// The parameters to start from: `default`, or `paper`
+    #[arg(long, value_name = "NAME", default_value = "default")]
+    pub preset: String,
+    /// How many particles
+    #[arg(long, value_name = "N", value_parser = parse_count)]
+    particles: Option<usize>,
+    /// The seed of all randomness: one seed gives the same boxes on any number of threads
+    #[arg(long, value_name = "N")]
+    seed: Option<u64>,
+    /// Parameters to use instead of the preset's; `infopart config` prints all of them
+    #[arg(long, value_name = "FILE.toml")]
+    config: Option<PathBuf>,
+}
+
+impl ParameterArgs {
+    /// Flags over the file over the preset, checked.
+    pub fn resolve(&self) -> Result<CheckedParameters> {
+        let preset = Parameters::preset(&self.preset).context("--preset")?;
+        let mut parameters = self.over_from_file(preset)?;
+        parameters.region = self.region.unwrap_or(parameters.region);
+        parameters.particles = self.particles.unwrap_or(parameters.particles);
+        parameters.seed = self.seed.unwrap_or(parameters.seed);
+        let from = match &self.config {
+            Some(path) => format!("parameters of {} and the flags", path.display()),
+            None => "parameters from the flags".to_owned(),
+        };
+        parameters.check().context(from)
+    }
+
+    fn over_from_file(&self, base: Parameters) -> Result<Parameters> {
+        let Some(path) = &self.config else { return Ok(base) };
+        let text = fs::read_to_string(path).map_err(|error| {
+            BadInput(format!(
+                "--config {}: {error}; give a TOML text file (`infopart config` prints one)",
+                path.display()
+            ))
+        })?;
+        Parameters::from_toml(&text, base).with_context(|| format!("--config {}", path.display()))
+    }
+}
