@@ -5,6 +5,8 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 
 mod config;
+mod demo;
+mod demo_folder;
 mod exit;
 mod interrupt;
 mod outputs;
@@ -38,6 +40,9 @@ enum Command {
     /// Track a target from its box in the first frame
     #[command(after_help = EXAMPLES_AND_EXIT_CODES)]
     Track(Box<track::TrackArgs>),
+    /// Render a walking person, track it with InfoPart and with the whole body, and show both; needs no data
+    #[command(after_help = demo::EXAMPLES)]
+    Demo(demo::DemoArgs),
     /// Print every parameter with its meaning and unit, as a TOML that --config takes
     Config(config::ConfigArgs),
 }
@@ -46,6 +51,7 @@ enum Command {
 pub fn main() -> ExitCode {
     let outcome = match Cli::parse().command {
         Command::Track(args) => track::track(&args),
+        Command::Demo(args) => demo::demo(&args),
         Command::Config(args) => config::config(&args),
     };
     exit::report(outcome)

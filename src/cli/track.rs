@@ -6,7 +6,7 @@ use anyhow::{Context, Error, Result};
 use clap::Args;
 use infopart::{
     geometry::{Origin, Rect},
-    output::Summary,
+    output::{Summary, tracker_title},
     run::{RunError, RunFailure, RunReport, run},
     sequence::{self, OpenOptions, Sequence},
     tracker::{CheckedParameters, InfoPart, Tracker},
@@ -164,7 +164,7 @@ fn summary(
 ) -> Summary {
     Summary {
         sequence,
-        tracker: tracker.to_owned(),
+        tracker: tracker_title(tracker, parameters.region),
         region: parameters.region,
         preset: args.parameters.preset.clone(),
         seed: parameters.seed,

@@ -9,8 +9,8 @@ use super::{
 use crate::{frame::FrameView, geometry::Rect, tracker::Status};
 
 const BLACK: Ink = Ink::solid([0, 0, 0]);
-const WHITE: Ink = Ink::solid([255, 255, 255]);
-const PARTICLE: Ink = Ink::solid([255, 224, 64]);
+pub(super) const WHITE: Ink = Ink::solid([255, 255, 255]);
+pub(super) const PARTICLE: Ink = Ink::solid([255, 224, 64]);
 /// Longer side, in pixels, below which a frame is enlarged so that lines and letters stay legible.
 const LEGIBLE_SIDE: u32 = 600;
 const LARGEST_ZOOM: u32 = 4;
@@ -24,12 +24,14 @@ const SIDE_PER_UNIT: f64 = 900.0;
 /// a dashed white box, and a caption. Frames shorter than 600 pixels on their longer side are enlarged by a whole
 /// number.
 pub fn annotate(event: &FrameEvent<'_>) -> RgbImage {
-    let mut page = Page::of(event.frame);
-    page.draw_particles(event);
-    page.draw_ground_truth(event.ground_truth);
-    page.draw_boxes(event);
+    let mut page = Page::with_boxes(event);
     page.draw_caption(event);
     page.picture
+}
+
+/// As [`annotate`], but for the caption, which a contact sheet has below its tiles.
+pub(super) fn annotate_without_caption(event: &FrameEvent<'_>) -> RgbImage {
+    Page::with_boxes(event).picture
 }
 
 /// Green for tracking, orange for uncertain, red for lost.
@@ -66,6 +68,14 @@ struct Page {
 }
 
 impl Page {
+    fn with_boxes(event: &FrameEvent<'_>) -> Self {
+        let mut page = Self::of(event.frame);
+        page.draw_particles(event);
+        page.draw_ground_truth(event.ground_truth);
+        page.draw_boxes(event);
+        page
+    }
+
     fn of(frame: FrameView<'_>) -> Self {
         let original = rgb_from_view(frame);
         let (width, height) = original.dimensions();

@@ -5,9 +5,12 @@ use std::path::Path;
 use image::{RgbImage, imageops};
 
 use super::{
-    FrameEvent, Observer, OutputError, annotate,
+    FrameEvent, Observer, OutputError,
+    annotate::{annotate_without_caption, status_ink},
     canvas::{self, Ink},
+    legend,
 };
+use crate::{geometry::Rect, tracker::Status};
 
 const PAPER: [u8; 3] = [24, 26, 31];
 const TITLE: Ink = Ink::solid([245, 245, 245]);
@@ -20,14 +23,21 @@ const LINE: u32 = canvas::LINE_HEIGHT + 6;
 /// Size of the title's letters, as a multiple of the others'.
 const TITLE_SCALE: u32 = 2;
 const TITLE_LINE: u32 = TITLE_SCALE * canvas::LINE_HEIGHT + 8;
+/// Height of a caption with the space above and below it, pixels.
+const CAPTION_LINE: u32 = LINE + 8;
+const LEGEND_LINE: u32 = canvas::LINE_HEIGHT + 16;
+/// Width of the status light with the space behind it, pixels.
+const LIGHT: u32 = 18;
 
 /// A picture and what is written below it.
 #[derive(Debug, Clone)]
 pub struct Tile {
     /// The picture.
     pub picture: RgbImage,
-    /// One line of ASCII text; empty for none.
+    /// One line of ASCII text below the picture; empty for none.
     pub caption: String,
+    /// What the light before the caption shows; none without it.
+    pub status: Option<Status>,
 }
 
 /// Tiles in a grid under headings, to be saved as one PNG.
@@ -79,13 +89,15 @@ impl ContactSheet {
         let width = self.columns * (self.tile_width + MARGIN) + MARGIN;
         let height = MARGIN
             + TITLE_LINE
+            + LEGEND_LINE
             + self.sections.iter().map(|(_, tiles)| LINE + self.grid_height(tiles) + MARGIN).sum::<u32>();
         let mut sheet = RgbImage::from_pixel(width, height, image::Rgb(PAPER));
         let left = i64::from(MARGIN);
         let scale =
             if canvas::text_width(&self.title, TITLE_SCALE) + 2 * MARGIN <= width { TITLE_SCALE } else { 1 };
         canvas::draw_text(&mut sheet, &self.title, (left, left), scale, TITLE);
-        let mut top = MARGIN + TITLE_LINE;
+        legend::draw(&mut sheet, (MARGIN, MARGIN + TITLE_LINE), CAPTION);
+        let mut top = MARGIN + TITLE_LINE + LEGEND_LINE;
         for (heading, tiles) in &self.sections {
             canvas::draw_text(&mut sheet, heading, (left, i64::from(top)), 1, HEADING);
             self.draw_grid(&mut sheet, tiles, top + LINE);
@@ -107,7 +119,7 @@ impl ContactSheet {
     fn row_height(row: &[Tile]) -> u32 {
         let tallest = row.iter().map(|tile| tile.picture.height()).max().unwrap_or(0);
         let captioned = row.iter().any(|tile| !tile.caption.is_empty());
-        tallest + if captioned { LINE } else { MARGIN }
+        tallest + if captioned { CAPTION_LINE } else { MARGIN }
     }
 
     fn grid_height(&self, tiles: &[Tile]) -> u32 {
@@ -120,21 +132,32 @@ impl ContactSheet {
             for (column, tile) in row.iter().enumerate() {
                 let left = i64::from(MARGIN) + column as i64 * i64::from(self.tile_width + MARGIN);
                 imageops::replace(sheet, &tile.picture, left, top);
-                let below = top + i64::from(tile.picture.height()) + 2;
-                canvas::draw_text(sheet, &tile.caption, (left, below), 1, CAPTION);
+                let below = top + i64::from(tile.picture.height()) + 3;
+                draw_caption(sheet, tile, (left, below));
             }
             top += i64::from(Self::row_height(row));
         }
     }
 }
 
-/// Collects annotated frames at even distances over a sequence, for a [`ContactSheet`].
+fn draw_caption(sheet: &mut RgbImage, tile: &Tile, (left, top): (i64, i64)) {
+    let Some(status) = tile.status else {
+        return canvas::draw_text(sheet, &tile.caption, (left, top), 1, CAPTION);
+    };
+    let centre = (left as f64 + 6.0, top as f64 + f64::from(canvas::LINE_HEIGHT) / 2.0);
+    canvas::fill_disc(sheet, centre, 4.5, status_ink(status));
+    canvas::draw_text(sheet, &tile.caption, (left + i64::from(LIGHT), top), 1, CAPTION);
+}
+
+/// Collects some annotated frames of a sequence, for a [`ContactSheet`].
 #[derive(Debug)]
 pub struct SheetSampler {
     /// Counted from 0, ascending.
     wanted: Vec<usize>,
     seen: usize,
     tiles: Vec<Tile>,
+    /// The share of the frame's width and height that is shown, in (0, 1].
+    shown: f64,
 }
 
 impl SheetSampler {
@@ -146,7 +169,21 @@ impl SheetSampler {
             1 => vec![total - 1],
             _ => (0..count).map(|i| (i * (total - 1) + (count - 1) / 2) / (count - 1)).collect(),
         };
-        Self { wanted, seen: 0, tiles: Vec::new() }
+        Self { wanted, seen: 0, tiles: Vec::new(), shown: 1.0 }
+    }
+
+    /// Keeps the frames at these places in the sequence, counted from 1.
+    pub fn at(places: &[usize]) -> Self {
+        let mut wanted: Vec<usize> = places.iter().filter_map(|place| place.checked_sub(1)).collect();
+        wanted.sort_unstable();
+        wanted.dedup();
+        Self { wanted, seen: 0, tiles: Vec::new(), shown: 1.0 }
+    }
+
+    /// Shows only this share of the frame's width and height around the target, but the whole frame where the
+    /// estimate and the truth do not both fit.
+    pub fn close_up(self, share: f64) -> Self {
+        Self { shown: share.clamp(0.1, 1.0), ..self }
     }
 
     /// The kept frames so far.
@@ -158,20 +195,53 @@ impl SheetSampler {
 impl Observer for SheetSampler {
     fn on_frame(&mut self, event: &FrameEvent<'_>) -> Result<(), OutputError> {
         if self.wanted.get(self.tiles.len()) == Some(&self.seen) {
-            self.tiles.push(Tile { picture: annotate(event), caption: String::new() });
+            self.tiles.push(tile_of(event, self.shown));
         }
         self.seen += 1;
         Ok(())
     }
 }
 
+fn tile_of(event: &FrameEvent<'_>, shown: f64) -> Tile {
+    let estimate = event.estimate;
+    let mut caption = format!("{:<3} {} {:.2}", event.number, estimate.status, estimate.confidence);
+    if let Some(truth) = event.ground_truth {
+        caption += &format!("  overlap {:.2}", estimate.box_in_frame.overlap(&truth));
+    }
+    let picture = close_up(annotate_without_caption(event), event, shown);
+    Tile { picture, caption, status: Some(estimate.status) }
+}
+
+/// The window of an annotated frame that [`SheetSampler::close_up`] speaks of.
+fn close_up(picture: RgbImage, event: &FrameEvent<'_>, share: f64) -> RgbImage {
+    let (width, height) = (event.frame.width() as f64, event.frame.height() as f64);
+    let seen = event.estimate.box_in_frame;
+    let truth = event.ground_truth.unwrap_or(seen);
+    let (w, h) = (share * width, share * height);
+    let (x, y) = truth.centre();
+    let window = Rect::new((x - w / 2.0).clamp(0.0, width - w), (y - h / 2.0).clamp(0.0, height - h), w, h);
+    let fits = |inside: Rect| {
+        inside.x >= window.x
+            && inside.y >= window.y
+            && inside.right() <= window.right()
+            && inside.bottom() <= window.bottom()
+    };
+    if !(fits(seen) && fits(truth)) {
+        return picture;
+    }
+    let zoom = f64::from(picture.width()) / width;
+    let [x, y, w, h] = [window.x, window.y, w, h].map(|length| (length * zoom) as u32);
+    imageops::crop_imm(&picture, x, y, w.max(1), h.max(1)).to_image()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{geometry::Rect, output::testing::EventParts};
+    use crate::output::testing::EventParts;
 
     fn tile(width: u32, height: u32, level: u8) -> Tile {
-        Tile { picture: RgbImage::from_pixel(width, height, image::Rgb([level; 3])), caption: "one".into() }
+        let picture = RgbImage::from_pixel(width, height, image::Rgb([level; 3]));
+        Tile { picture, caption: "one".into(), status: None }
     }
 
     #[test]
@@ -180,13 +250,13 @@ mod tests {
         sheet.section("first", [tile(100, 60, 200), tile(50, 30, 100), tile(50, 30, 60)]);
         let picture = sheet.render();
         assert_eq!(picture.width(), 2 * (50 + MARGIN) + MARGIN);
-        let top = MARGIN + TITLE_LINE + LINE;
+        let top = MARGIN + TITLE_LINE + LEGEND_LINE + LINE;
         let level = |x: u32, y: u32| picture.get_pixel(x, y).0[0];
         assert_eq!(level(MARGIN, top), 200);
         assert_eq!(level(MARGIN + 49, top + 29), 200);
         assert_eq!(level(MARGIN + 50, top + 29), PAPER[0]);
         assert_eq!(level(2 * MARGIN + 50, top), 100);
-        assert_eq!(level(MARGIN, top + 30 + LINE), 60);
+        assert_eq!(level(MARGIN, top + 30 + CAPTION_LINE), 60);
     }
 
     #[test]
@@ -199,5 +269,35 @@ mod tests {
             sampler.on_frame(&EventParts::new(Rect::new(10.0, 12.0, 8.0, 20.0)).event()).unwrap();
         }
         assert_eq!(sampler.into_tiles().len(), 3);
+        assert_eq!(SheetSampler::at(&[9, 1, 0, 9]).wanted, [0, 8]);
+    }
+
+    #[test]
+    fn a_close_up_shows_both_boxes_or_the_whole_frame() {
+        let mut parts = EventParts::new(Rect::new(40.0, 12.0, 8.0, 20.0));
+        let size = |parts: &EventParts| {
+            let mut sampler = SheetSampler::at(&[1]).close_up(0.5);
+            sampler.on_frame(&parts.event()).unwrap();
+            sampler.into_tiles().remove(0).picture.dimensions()
+        };
+        assert_eq!(size(&parts), (128, 96), "half of 64 x 48, four times enlarged");
+        parts.ground_truth = Some(Rect::new(2.0, 12.0, 8.0, 20.0));
+        assert_eq!(size(&parts), (256, 192));
+    }
+
+    #[test]
+    fn a_sampled_frame_has_its_status_as_light_and_caption() {
+        let mut parts = EventParts::new(Rect::new(10.0, 12.0, 8.0, 20.0));
+        parts.estimate.status = Status::Lost;
+        parts.ground_truth = Some(parts.estimate.box_in_frame);
+        let mut sampler = SheetSampler::at(&[1]);
+        sampler.on_frame(&parts.event()).unwrap();
+        let tile = sampler.into_tiles().remove(0);
+        assert_eq!((tile.status, tile.caption.as_str()), (Some(Status::Lost), "1   lost 1.00  overlap 1.00"));
+        let mut sheet = ContactSheet::new("", 1, 256);
+        let height = tile.picture.height();
+        sheet.section("", [tile]);
+        let (x, y) = (MARGIN + 6, MARGIN + TITLE_LINE + LEGEND_LINE + LINE + height + 3 + 8);
+        assert_eq!(sheet.render().get_pixel(x, y).0, status_ink(Status::Lost).colour);
     }
 }

@@ -13,6 +13,7 @@ mod canvas;
 mod contact_sheet;
 mod destination;
 mod error;
+mod legend;
 mod partial_file;
 mod pictures;
 mod progress;
@@ -30,7 +31,7 @@ pub use partial_file::PartialFile;
 pub use pictures::PictureFolder;
 pub use progress::Progress;
 pub use rows::{RowFormat, RowOptions, RowWriter};
-pub use summary::Summary;
+pub use summary::{Summary, tracker_title};
 pub use video::{VIDEO_EXTENSIONS, VideoWriter};
 
 /// What happened in one frame of the loop.

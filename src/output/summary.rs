@@ -11,7 +11,7 @@ use crate::{geometry::Region, run::RunReport};
 pub struct Summary {
     /// The sequence's name.
     pub sequence: String,
-    /// The tracker's name.
+    /// The tracker's name, as [`tracker_title`] gives it.
     pub tracker: String,
     /// The tracked region.
     pub region: Region,
@@ -24,6 +24,19 @@ pub struct Summary {
     /// What the loop measured.
     #[serde(flatten)]
     pub report: RunReport,
+}
+
+/// What a tracker is called in tables by the region it tracks: its own name for the part, `whole-body` for the
+/// baseline, and the name with the fraction for any other.
+pub fn tracker_title(name: &str, region: Region) -> String {
+    let fraction = region.fraction();
+    if fraction == Region::Whole.fraction() {
+        "whole-body".to_owned()
+    } else if fraction == Region::Part.fraction() {
+        name.to_owned()
+    } else {
+        format!("{name} ({fraction})")
+    }
 }
 
 impl Summary {
@@ -128,6 +141,19 @@ mod tests {
             seed: 7,
             threads: 2,
             report,
+        }
+    }
+
+    #[test]
+    fn a_tracker_is_called_by_what_it_tracks() {
+        for (region, title) in [
+            (Region::Part, "infopart"),
+            (Region::Upper(0.625), "infopart"),
+            (Region::Whole, "whole-body"),
+            (Region::Upper(1.0), "whole-body"),
+            (Region::Upper(0.5), "infopart (0.5)"),
+        ] {
+            assert_eq!(tracker_title("infopart", region), title);
         }
     }
 

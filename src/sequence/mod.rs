@@ -37,7 +37,7 @@ mod walker;
 pub use error::{RowProblem, SequenceError};
 pub use ground_truth::{parse_ground_truth, read_ground_truth};
 pub use open::open;
-pub use walker::{Walker, WalkerOptions};
+pub use walker::{Occluder, Walker, WalkerOptions};
 
 /// A frame and where it stands in its source.
 #[derive(Debug, Clone)]

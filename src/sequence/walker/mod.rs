@@ -36,6 +36,19 @@ const NOISE: f32 = 3.0;
 
 const JPEG_QUALITY: u8 = 92;
 
+/// What comes between the camera and the walker, a little after the middle of the walk.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum Occluder {
+    /// Nothing.
+    #[default]
+    None,
+    /// A young tree, less than half as wide as the person.
+    YoungTree,
+    /// A tree that hides the whole person for about seven frames.
+    Tree,
+}
+
 /// What the synthetic walker looks like.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct WalkerOptions {
@@ -47,13 +60,13 @@ pub struct WalkerOptions {
     pub frames: usize,
     /// Everything random comes from it; the same seed gives the same pixels. Default 1.
     pub seed: u64,
-    /// Whether a tree in front hides the person for about seven frames, a little after the middle. Default false.
-    pub occluder: bool,
+    /// What passes in front of the person. Default: nothing.
+    pub occluder: Occluder,
 }
 
 impl Default for WalkerOptions {
     fn default() -> Self {
-        Self { width: 320, height: 240, frames: 150, seed: 1, occluder: false }
+        Self { width: 320, height: 240, frames: 150, seed: 1, occluder: Occluder::None }
     }
 }
 
@@ -84,8 +97,14 @@ impl Walker {
         self.moments.iter().map(|moment| Some(moment.box_in_frame())).collect()
     }
 
+    /// The file name of the frame with this number, counted from 1, in `img/`.
+    pub fn image_name(number: usize) -> String {
+        format!("{number:04}.jpg")
+    }
+
     /// Writes all frames as `img/0001.jpg`, ... and the boxes, counted from 1, as `groundtruth_rect.txt` into `folder`,
-    /// which is made if need be. Frames that a longer run left there are removed.
+    /// which is made if need be. Frames that a longer run left there are removed: pictures that go on with the
+    /// numbers, whoever made them.
     ///
     /// # Errors
     /// [`SequenceError::Write`], naming the file or folder that cannot be written.
@@ -170,7 +189,7 @@ impl FrameSource for Walker {
 }
 
 fn label(index: usize) -> String {
-    format!("{:04}.jpg", index + 1)
+    Walker::image_name(index + 1)
 }
 
 fn image_path(images: &Path, index: usize) -> PathBuf {

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::{WalkerOptions, figure::ASPECT};
+use super::{Occluder, WalkerOptions, figure::ASPECT};
 use crate::geometry::Rect;
 
 /// The walk takes this many frames from side to side; shorter sequences stop on the way.
@@ -24,8 +24,11 @@ const PARALLAX: f64 = 1.25;
 /// When the person is behind the occluder, as a share of the walk.
 const OCCLUDED_AT: f64 = 0.56;
 
-/// How many frames the person's box is wholly behind the occluder.
+/// How many frames the person's box is wholly behind a tree.
 const OCCLUDED_FRAMES: f64 = 7.0;
+
+/// Width of a young tree by the width of the person's box.
+const YOUNG_TREE: f64 = 0.3;
 
 /// One frame's state of the world. Lengths in pixels of the frame.
 #[derive(Debug, Clone, Copy)]
@@ -76,7 +79,7 @@ pub(super) fn moments(options: &WalkerOptions) -> Vec<Moment> {
             let street = foot.0 + camera.0;
             phase += TAU * (street - walked.unwrap_or(street)) / (STRIDE * height);
             walked = Some(street);
-            let occluder = options.occluder.then(|| {
+            let occluder = (options.occluder != Occluder::None).then(|| {
                 let centre = occluder_centre(options, t);
                 (centre - occluder_width / 2.0, centre + occluder_width / 2.0)
             });
@@ -111,23 +114,27 @@ fn occluder_centre(options: &WalkerOptions, t: f64) -> f64 {
 }
 
 fn occluder_width(options: &WalkerOptions, last: usize) -> f64 {
+    let person = ASPECT * height(options, OCCLUDED_AT);
+    if options.occluder == Occluder::YoungTree {
+        return YOUNG_TREE * person;
+    }
     let half = OCCLUDED_FRAMES / 2.0 / last as f64;
     let (before, after) = (OCCLUDED_AT - half, OCCLUDED_AT + half);
     let passed = |t| foot(options, t).0 - occluder_centre(options, t);
-    ASPECT * height(options, OCCLUDED_AT) + passed(after) - passed(before)
+    person + passed(after) - passed(before)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn all(occluder: bool) -> Vec<Moment> {
+    fn all(occluder: Occluder) -> Vec<Moment> {
         moments(&WalkerOptions { occluder, ..WalkerOptions::default() })
     }
 
     #[test]
     fn size_and_light_change_as_promised() {
-        let moments = all(false);
+        let moments = all(Occluder::None);
         let (first, last) = (moments[0], moments[149]);
         assert!((first.height - 84.0).abs() < 1e-9 && (last.height / first.height - 1.35).abs() < 1e-9);
         let darkest = moments.iter().map(|moment| moment.gain).fold(1.0, f64::min);
@@ -136,7 +143,7 @@ mod tests {
 
     #[test]
     fn the_person_stays_in_the_frame_and_walks_without_jumps() {
-        let moments = all(false);
+        let moments = all(Occluder::None);
         for pair in moments.windows(2) {
             let (before, after) = (pair[0].box_in_frame(), pair[1].box_in_frame());
             assert!(after.x > 0.0 && after.y > 0.0 && after.right() < 320.0 && after.bottom() < 240.0);
@@ -147,20 +154,29 @@ mod tests {
     }
 
     #[test]
-    fn the_occluder_hides_the_box_for_a_few_frames() {
-        let hidden = all(true).into_iter().filter(|moment| {
+    fn a_tree_hides_the_box_for_a_few_frames() {
+        let hidden = all(Occluder::Tree).into_iter().filter(|moment| {
             let (left, right) = moment.occluder.unwrap();
             let box_in_frame = moment.box_in_frame();
             left <= box_in_frame.x && box_in_frame.right() <= right
         });
         assert!((6..=8).contains(&hidden.count()));
-        assert!(all(false).iter().all(|moment| moment.occluder.is_none()));
+        let young = all(Occluder::YoungTree);
+        let crossed = young.into_iter().filter(|moment| {
+            let (left, right) = moment.occluder.unwrap();
+            let box_in_frame = moment.box_in_frame();
+            assert!(right - left < 0.45 * box_in_frame.w * 84.0 * 1.35 / moment.height);
+            box_in_frame.x <= left && right <= box_in_frame.right()
+        });
+        assert!((5..=20).contains(&crossed.count()));
+        assert!(all(Occluder::None).iter().all(|moment| moment.occluder.is_none()));
     }
 
     #[test]
     fn a_short_sequence_walks_no_faster() {
-        let short = moments(&WalkerOptions { frames: 10, occluder: true, ..WalkerOptions::default() });
+        let short =
+            moments(&WalkerOptions { frames: 10, occluder: Occluder::Tree, ..WalkerOptions::default() });
         assert_eq!(short.len(), 10);
-        assert_eq!(short[9].box_in_frame(), all(true)[9].box_in_frame());
+        assert_eq!(short[9].box_in_frame(), all(Occluder::Tree)[9].box_in_frame());
     }
 }

@@ -102,7 +102,8 @@ fn the_written_folder_opens_as_what_was_rendered() {
 #[test]
 fn odd_sizes_render_and_no_frames_are_none() {
     for (width, height) in [(0, 0), (64, 64), (641, 97), (100, 500)] {
-        let options = WalkerOptions { width, height, frames: 2, occluder: true, ..WalkerOptions::default() };
+        let options =
+            WalkerOptions { width, height, frames: 2, occluder: Occluder::Tree, ..WalkerOptions::default() };
         let frame = Walker::new(options).next_frame().unwrap().unwrap().frame;
         assert_eq!((frame.width(), frame.height()), (width.max(64), height.max(64)));
     }

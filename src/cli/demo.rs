@@ -1,0 +1,173 @@
+//! `infopart demo`: a rendered walker, tracked by its part and by its whole body, to look at.
+
+use std::{io::Write, path::PathBuf, sync::atomic::AtomicBool};
+
+use anyhow::{Context, Result};
+use clap::Args;
+use infopart::{
+    geometry::Region,
+    output::{
+        ContactSheet, Destination, Observer, PartialFile, Progress, RowFormat, RowOptions, RowWriter,
+        SheetSampler, StandardOutput, Tile, tracker_title,
+    },
+    run::{RunReport, run},
+    sequence::{self, Occluder, OpenOptions, Walker, WalkerOptions},
+    tracker::{CheckedParameters, InfoPart, Parameters, Tracker},
+};
+
+use super::{demo_folder::DemoFolder, exit::BadInput, interrupt};
+
+pub const EXAMPLES: &str = "\
+Examples:
+  infopart demo                       everything into ./infopart-demo
+  infopart demo --out /tmp/walk --seed 7
+
+Written into DIR:
+  walker/            the person as an OTB folder: 150 pictures and the exact boxes
+  results/           boxes of both trackers: infopart.txt, whole-body.txt
+  contact_sheet.png  the same frames of both, annotated
+An earlier demo's files are replaced; a folder that holds anything else is refused.
+
+Exit codes: 0 success, 2 DIR cannot be used, 130 interrupted with Ctrl-C";
+
+const REGIONS: [Region; 2] = [Region::Part, Region::Whole];
+
+/// What the sheet shows, counted from 1: the walk, and around frame 84 the person behind the young tree.
+const FRAMES_ON_SHEET: [usize; 8] = [1, 40, 72, 80, 84, 88, 112, 150];
+/// The share of a frame around the person that the sheet shows.
+const SHOWN: f64 = 0.6;
+const COLUMNS: u32 = 4;
+const TILE_WIDTH: u32 = 320;
+
+#[derive(Debug, Args)]
+pub struct DemoArgs {
+    /// Where everything is written
+    #[arg(long, value_name = "DIR", default_value = "infopart-demo")]
+    out: PathBuf,
+    /// The seed of the rendered street and of both trackers
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+}
+
+pub fn demo(args: &DemoArgs) -> Result<()> {
+    let parameters = REGIONS.map(|region| parameters(args.seed, region));
+    let walker = Walker::new(WalkerOptions {
+        seed: args.seed,
+        occluder: Occluder::YoungTree,
+        ..WalkerOptions::default()
+    });
+    let frames = walker.ground_truth().len();
+    let folder = DemoFolder::claim(&args.out, frames)?;
+    let interrupted = interrupt::watch()?;
+    eprintln!("rendering {frames} frames of a walking person into {}", folder.walker().display());
+    walker.write_otb_folder(&folder.walker()).context("--out")?;
+    let mut passes = Vec::new();
+    for parameters in parameters {
+        passes.push(track(&folder, parameters?, interrupted)?);
+    }
+    contact_sheet(&passes).save(&folder.contact_sheet())?;
+    tell(&folder, &passes)
+}
+
+fn parameters(seed: u64, region: Region) -> Result<CheckedParameters> {
+    let mut parameters = Parameters::default();
+    parameters.seed = seed;
+    parameters.region = region;
+    parameters.check().context("--seed")
+}
+
+/// A tracker's way through the sequence.
+struct Pass {
+    title: String,
+    report: RunReport,
+    tiles: Vec<Tile>,
+}
+
+/// Tracks the walker from the written folder, as `infopart track` would.
+fn track(folder: &DemoFolder, parameters: CheckedParameters, interrupted: &AtomicBool) -> Result<Pass> {
+    let input = folder.walker().display().to_string();
+    let mut sequence = sequence::open(&input, &OpenOptions::default())?;
+    let first_box = sequence.ground_truth.first().copied().flatten();
+    let first_box = first_box.ok_or_else(|| BadInput(format!("{input}: no box in the first frame")))?;
+    let mut tracker = InfoPart::new(parameters.clone());
+    let title = tracker_title(tracker.name(), parameters.region);
+    let (format, origin) = (RowFormat::Otb, sequence.origin);
+    let options = RowOptions { format, origin, initial_box_as_given: None, timing: false };
+    let mut rows = RowWriter::new(PartialFile::create(&folder.result(&title))?, options);
+    let mut sampler = SheetSampler::at(&FRAMES_ON_SHEET).close_up(SHOWN);
+    let mut progress = Progress::new(sequence.source.remaining());
+    let mut observers: [&mut dyn Observer; 3] = [&mut rows, &mut sampler, &mut progress];
+    let report = run(
+        sequence.source.as_mut(),
+        &sequence.ground_truth,
+        &mut tracker,
+        first_box,
+        &mut observers,
+        interrupted,
+    )?;
+    Ok(Pass { title, report, tiles: sampler.into_tiles() })
+}
+
+fn contact_sheet(passes: &[Pass]) -> ContactSheet {
+    let mut sheet = ContactSheet::new(
+        "infopart demo: a walker, crossed by a young tree near frame 84",
+        COLUMNS,
+        TILE_WIDTH,
+    );
+    for pass in passes {
+        sheet.section(heading(pass), pass.tiles.clone());
+    }
+    sheet
+}
+
+fn heading(pass: &Pass) -> String {
+    let what =
+        if pass.title == "whole-body" { "the whole box is tracked" } else { "the upper 5/8 is tracked" };
+    let scores = pass
+        .report
+        .scores
+        .map(|scores| format!("   R1 {:.1} %   R2 {:.1} %   AUC {:.3}", scores.r1, scores.r2, scores.auc));
+    format!("{} ({what}){}", pass.title, scores.unwrap_or_default())
+}
+
+fn tell(folder: &DemoFolder, passes: &[Pass]) -> Result<()> {
+    let mut output = StandardOutput::new();
+    let text = format!("{}\n{}", table(passes), next_steps(folder, passes));
+    output.write_all(text.as_bytes()).map_err(|error| output.name_error(error))?;
+    Ok(output.complete()?)
+}
+
+fn table(passes: &[Pass]) -> String {
+    let mut text = format!(
+        "{:<11}{:>8}{:>9}{:>8}{:>10}{:>11}{:>6}\n",
+        "tracker", "R1 %", "R2 %", "AUC", "frames/s", "uncertain", "lost"
+    );
+    for Pass { title, report, .. } in passes {
+        let (r1, r2, auc) =
+            report.scores.map_or((0.0, 0.0, 0.0), |scores| (scores.r1, scores.r2, scores.auc));
+        let speed = report.frames_per_second.unwrap_or_default();
+        let (uncertain, lost) = (report.uncertain_frames, report.lost_frames);
+        text += &format!("{title:<11}{r1:>8.2}{r2:>9.2}{auc:>8.3}{speed:>10.1}{uncertain:>11}{lost:>6}\n");
+    }
+    text + "\
+R1: frames with a centre error of at most 20 pixels. R2: overlap greater than 0.5. AUC: area under the success
+curve, at most 0.952. frames/s: updates only. uncertain, lost: frames of which the tracker says so itself.
+"
+}
+
+fn next_steps(folder: &DemoFolder, passes: &[Pass]) -> String {
+    let sheet = folder.contact_sheet();
+    let (walker, annotated) = (quoted(folder.walker()), quoted(folder.annotated()));
+    let mut text = format!("look at   {}\n", sheet.display());
+    for pass in passes {
+        text += &format!("boxes     {}\n", folder.result(&pass.title).display());
+    }
+    text + &format!("run next  infopart track {walker} --annotate {annotated}\n")
+}
+
+/// A path as a shell takes it.
+fn quoted(path: PathBuf) -> String {
+    let text = path.display().to_string();
+    let is_plain = |letter: char| letter.is_alphanumeric() || "/\\._-:".contains(letter);
+    if text.chars().all(is_plain) { text } else { format!("'{}'", text.replace('\'', r"'\''")) }
+}
