@@ -9,6 +9,14 @@ use infopart::{
     tracker::Parameters,
 };
 
+pub const EXAMPLES: &str = "\
+Examples:
+  infopart config > my.toml                     then edit it; keys left out keep the preset's value
+  infopart track Crossing --config my.toml
+  infopart config --preset paper                the values of the paper
+
+Exit codes: 0 success, 2 no such preset or standard output cannot be written";
+
 #[derive(Debug, Args)]
 pub struct ConfigArgs {
     /// Whose values to print: `default`, or `paper`

@@ -18,6 +18,10 @@ use infopart::{
 use super::{demo_folder::DemoFolder, exit::BadInput, interrupt};
 
 pub const EXAMPLES: &str = "\
+The person walks 150 frames down a street, while the legs swing, the light and the person's size change, and a young
+tree passes in front. The same tracker then follows the upper 5/8 of the first box (infopart) and all of it
+(whole-body), and a table of both is printed. It takes some seconds.
+
 Examples:
   infopart demo                       everything into ./infopart-demo
   infopart demo --out /tmp/walk --seed 7
@@ -50,7 +54,8 @@ pub struct DemoArgs {
 }
 
 pub fn demo(args: &DemoArgs) -> Result<()> {
-    let parameters = REGIONS.map(|region| parameters(args.seed, region));
+    let [part, whole] = REGIONS.map(|region| parameters(args.seed, region));
+    let parameters = [part?, whole?];
     let walker = Walker::new(WalkerOptions {
         seed: args.seed,
         occluder: Occluder::YoungTree,
@@ -63,7 +68,7 @@ pub fn demo(args: &DemoArgs) -> Result<()> {
     walker.write_otb_folder(&folder.walker()).context("--out")?;
     let mut passes = Vec::new();
     for parameters in parameters {
-        passes.push(track(&folder, parameters?, interrupted)?);
+        passes.push(track(&folder, parameters, interrupted)?);
     }
     contact_sheet(&passes).save(&folder.contact_sheet())?;
     tell(&folder, &passes)

@@ -8,15 +8,17 @@ mod config;
 mod demo;
 mod demo_folder;
 mod exit;
+mod first_box;
 mod interrupt;
 mod outputs;
 mod parameters;
 mod track;
 mod values;
 
-const EXAMPLES_AND_EXIT_CODES: &str = "\
+const EXAMPLES: &str = "\
 Examples:
-  infopart track Crossing                           an OTB folder, first box from its ground truth
+  infopart demo                                     needs no data: see it work first
+  infopart track Crossing --out boxes.txt           an OTB folder, first box from its ground truth
   infopart track video.mp4 --init 120,80,40,110     a video, first box given
   infopart track 'shots/*.png' --init 5,9,32,80 --out boxes.csv --annotate seen.mp4
   infopart config > my.toml                         every parameter, to edit and pass with --config
@@ -29,7 +31,7 @@ Exit codes:
 
 /// Tracks one person, or any other target, through a video.
 #[derive(Debug, Parser)]
-#[command(name = "infopart", version, after_help = EXAMPLES_AND_EXIT_CODES)]
+#[command(name = "infopart", version, after_help = EXAMPLES)]
 struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -37,13 +39,14 @@ struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Track a target from its box in the first frame
-    #[command(after_help = EXAMPLES_AND_EXIT_CODES)]
-    Track(Box<track::TrackArgs>),
-    /// Render a walking person, track it with InfoPart and with the whole body, and show both; needs no data
+    /// Render a walking person and track it by the part and by the whole body; needs no data
     #[command(after_help = demo::EXAMPLES)]
     Demo(demo::DemoArgs),
-    /// Print every parameter with its meaning and unit, as a TOML that --config takes
+    /// Track a target from its box in the first frame
+    #[command(after_help = track::EXAMPLES)]
+    Track(Box<track::TrackArgs>),
+    /// Print every parameter with its default, meaning and unit, as a TOML that --config takes
+    #[command(after_help = config::EXAMPLES)]
     Config(config::ConfigArgs),
 }
 

@@ -14,15 +14,16 @@ use super::{exit::BadInput, values::parse_count};
 #[derive(Debug, Args)]
 pub struct ParameterArgs {
     /// What to track of the box: `part` (the upper 5/8), `whole`, or the upper fraction, such as 0.5 or 5/8
+    /// [default: part]
     #[arg(long, value_name = "part|whole|FRACTION")]
     region: Option<Region>,
     /// The parameters to start from: `default`, or `paper`
     #[arg(long, value_name = "NAME", default_value = "default")]
     pub preset: String,
-    /// How many particles
+    /// How many particles; time grows with them [default: the preset's]
     #[arg(long, value_name = "N", value_parser = parse_count)]
     particles: Option<usize>,
-    /// The seed of all randomness: one seed gives the same boxes on any number of threads
+    /// The seed of all randomness: one seed gives the same boxes on any number of threads [default: 1]
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
     /// Parameters to use instead of the preset's; `infopart config` prints all of them

@@ -2,42 +2,69 @@
 
 use std::{path::PathBuf, sync::Arc};
 
-use anyhow::{Context, Error, Result};
+use anyhow::{Context, Result};
 use clap::Args;
 use infopart::{
     geometry::{Origin, Rect},
     output::{Summary, tracker_title},
-    run::{RunError, RunFailure, RunReport, run},
-    sequence::{self, OpenOptions, Sequence},
+    run::{RunReport, run},
+    sequence::{self, OpenOptions},
     tracker::{CheckedParameters, InfoPart, Tracker},
 };
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use super::{
     exit::BadInput,
+    first_box::FirstBox,
     interrupt,
     outputs::Outputs,
     parameters::ParameterArgs,
     values::{Format, parse_box, parse_count, parse_origin},
 };
 
+pub const EXAMPLES: &str = "\
+Examples:
+  infopart track Crossing --out boxes.txt           an OTB folder, first box from its ground truth
+  infopart track Jogging --target 2                 one of its several targets
+  infopart track video.mp4 --init 120,80,40,110     a video, first box given
+  infopart track 'shots/*.png' --init 5,9,32,80 --out boxes.csv --annotate seen.mp4
+  infopart track Crossing --region whole --json --quiet > /dev/null
+
+Rows: one a frame from the first tracked on, which holds the first box. A lost target has a row too: the best guess.
+The summary goes to standard error. With ground truth it has R1 (percentage of frames with a centre error of at most
+20 pixels), R2 (of frames with an overlap above 0.5) and AUC (area under the success curve, from 0 to 0.952).
+
+Pictures: the box is green while tracking, orange if uncertain, red if lost; thinner the tracked part, yellow dots the
+particles, dashed white the ground truth. An annotated video has one constant rate, that of the input's first five
+frames (25 a second for images), so of an input with a variable rate it runs faster or slower than the input; the time
+of each frame is in csv and jsonl rows.
+
+Parameters: --config over --preset, and --region, --particles and --seed over both.
+
+Exit codes:
+  0    success
+  1    internal failure
+  2    bad input: a flag, a file or a box
+  130  interrupted with Ctrl-C";
+
 #[derive(Debug, Args)]
 pub struct TrackArgs {
-    /// An OTB folder (img/ and groundtruth_rect.txt), a folder or a quoted glob of images, or a video
+    /// An OTB folder (img/ and groundtruth_rect.txt), a folder or a quoted glob of images (jpg, png, bmp),
+    /// or a video (needs ffmpeg)
     input: String,
-    /// The target's box in the first frame; without it, the ground truth's
+    /// The target's box in the first frame: left, top, width, height in pixels [default: the ground truth's]
     #[arg(long, value_name = "X,Y,W,H", value_parser = parse_box, allow_hyphen_values = true)]
     init: Option<Rect>,
-    /// Which target of an OTB folder that has several
+    /// Which target of an OTB folder that has several: the K of groundtruth_rect.K.txt
     #[arg(long, value_name = "K", value_parser = parse_count)]
     target: Option<usize>,
-    /// The number of the first pixel, in --init and in the rows [default: 1 for OTB folders, else 0]
+    /// The number of the first pixel, in --init, the ground truth and the rows [default: 1 for OTB folders, else 0]
     #[arg(long, value_name = "0|1", value_parser = parse_origin)]
     origin: Option<Origin>,
-    /// The first frame to track, counted from 1
+    /// The first frame to track, counted from 1; the first box is that of this frame [default: 1]
     #[arg(long, value_name = "N", value_parser = parse_count)]
     start: Option<usize>,
-    /// The last frame to track, counted from 1
+    /// The last frame to track, counted from 1 [default: the last there is]
     #[arg(long, value_name = "M", value_parser = parse_count)]
     end: Option<usize>,
     /// Where the rows go, one a frame; they are in FILE.partial until they are all there [default: standard output]
@@ -48,10 +75,11 @@ pub struct TrackArgs {
     pub format: Option<Format>,
     #[command(flatten)]
     parameters: ParameterArgs,
-    /// Draw boxes and particles on every frame: pictures in a folder, or a video (mp4, mkv, mov, avi; needs ffmpeg)
+    /// Draw boxes and particles on every frame: pictures DIR/000001.jpg and so on, or a video (mp4, mkv, mov, avi;
+    /// needs ffmpeg)
     #[arg(long, value_name = "DIR|FILE.mp4")]
     pub annotate: Option<PathBuf>,
-    /// How many threads weigh particles [default: one a core]
+    /// How many threads weigh particles; the boxes do not depend on it [default: one a core]
     #[arg(long, value_name = "N", value_parser = parse_count)]
     threads: Option<usize>,
     /// Add the milliseconds of each stage to the summary, and of each frame to csv and jsonl rows
@@ -69,7 +97,7 @@ pub fn track(args: &TrackArgs) -> Result<()> {
     let parameters = args.parameters.resolve()?;
     let pool = args.threads.map(thread_pool).transpose()?;
     let mut sequence = sequence::open(&args.input, &args.open_options())?;
-    let first = first_box(args, &sequence)?;
+    let first = FirstBox::find(args.init, &args.input, &sequence)?;
     let mut outputs = Outputs::open(args, sequence.origin, first.as_given, sequence.source.remaining())?;
     let interrupted = interrupt::watch()?;
     let threads = pool.as_ref().map_or_else(rayon::current_num_threads, |pool| pool.current_num_threads());
@@ -82,62 +110,16 @@ pub fn track(args: &TrackArgs) -> Result<()> {
         &mut outputs.observers(),
         interrupted,
     )
-    .map_err(|error| name_bad_init(args, outputs.explain(error)))?;
+    .map_err(|error| match first.refusal(&error) {
+        Some(refusal) => refusal.into(),
+        None => outputs.explain(error),
+    })?;
     tell_summary(args, summary(args, sequence.name, tracker.name(), &parameters, threads, report))
 }
 
 impl TrackArgs {
     fn open_options(&self) -> OpenOptions {
         OpenOptions { target: self.target, start: self.start, end: self.end, origin: self.origin }
-    }
-}
-
-/// The target's box in the first frame.
-struct FirstBox {
-    in_frame: Rect,
-    /// With the input's origin.
-    as_given: Rect,
-}
-
-fn first_box(args: &TrackArgs, sequence: &Sequence) -> Result<FirstBox> {
-    let origin = sequence.origin;
-    if let Some(as_given) = args.init {
-        return Ok(FirstBox { in_frame: origin.to_frame(as_given), as_given });
-    }
-    match sequence.ground_truth.first() {
-        Some(Some(in_frame)) => Ok(FirstBox { in_frame: *in_frame, as_given: as_in_file(origin, *in_frame) }),
-        Some(None) => Err(BadInput(format!(
-            "{}: the ground truth has no box in the first frame; give the target's box with --init X,Y,W,H, or begin \
-             at a later frame with --start N",
-            args.input
-        ))
-        .into()),
-        None => Err(BadInput(format!(
-            "{}: there is no ground truth to take the first box from; give the target's box in the first frame with \
-             --init X,Y,W,H",
-            args.input
-        ))
-        .into()),
-    }
-}
-
-/// The box as the ground truth's file has it. Subtracting the origin and adding it again costs a last digit; the
-/// nearest short decimal that means the same box gives it back.
-fn as_in_file(origin: Origin, in_frame: Rect) -> Rect {
-    let written = origin.from_frame(in_frame);
-    let short = |value: f64| (value * 1e9).round() / 1e9;
-    let rounded = Rect { x: short(written.x), y: short(written.y), ..written };
-    if origin.to_frame(rounded) == in_frame { rounded } else { written }
-}
-
-/// Puts --init before the tracker's complaint about the first box, if that is where the box came from.
-fn name_bad_init(args: &TrackArgs, error: Error) -> Error {
-    let refused_at_once = error
-        .downcast_ref::<RunError>()
-        .is_some_and(|run| run.frames_done == 0 && matches!(*run.failure, RunFailure::Track { .. }));
-    match args.init {
-        Some(Rect { x, y, w, h }) if refused_at_once => error.context(format!("--init {x},{y},{w},{h}")),
-        _ => error,
     }
 }
 
@@ -180,21 +162,4 @@ fn tell_summary(args: &TrackArgs, summary: Summary) -> Result<()> {
         eprintln!("{}", summary.to_text(args.timing));
     }
     Ok(())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn ground_truth_with_fractions_comes_back_as_it_was_written() {
-        for value in [0.1, 205.0, 0.7, 198.39, 1.0 / 3.0] {
-            let in_frame = Origin::One.to_frame(Rect::new(value, value, 5.0, 6.0));
-            let back = as_in_file(Origin::One, in_frame);
-            assert!((back.x - value).abs() < 1e-12);
-            if value != 1.0 / 3.0 {
-                assert_eq!((back.x, back.y), (value, value));
-            }
-        }
-    }
 }

@@ -15,7 +15,7 @@
 //! # Ok::<(), infopart::sequence::SequenceError>(())
 //! ```
 
-use std::time::Duration;
+use std::{path::PathBuf, time::Duration};
 
 use crate::{
     frame::Frame,
@@ -74,6 +74,8 @@ pub struct Sequence {
     /// The target's true box in each frame of the source, in frame coordinates, from its first frame on; `None` where
     /// the target is absent (a NaN row or a box without area). Empty if there is no ground truth.
     pub ground_truth: Vec<Option<Rect>>,
+    /// The file and the row, counted from 1, of the first true box.
+    pub ground_truth_row: Option<(PathBuf, usize)>,
     /// The number of the first pixel in the input's boxes: 1 for OTB folders, else 0, unless it was given.
     pub origin: Origin,
 }

@@ -88,7 +88,8 @@ fn without_ground_truth(
     name: String,
     options: &OpenOptions,
 ) -> Sequence {
-    Sequence { name, source, ground_truth: Vec::new(), origin: options.origin.unwrap_or(Origin::Zero) }
+    let origin = options.origin.unwrap_or(Origin::Zero);
+    Sequence { name, source, ground_truth: Vec::new(), ground_truth_row: None, origin }
 }
 
 fn refuse_target(input: &str, options: &OpenOptions) -> Result<(), SequenceError> {

@@ -65,6 +65,7 @@ impl OtbFolder {
         let ground_truth = rows.into_iter().take(positions.end).skip(positions.start);
         Ok(Sequence {
             name: self.name_of(annotation),
+            ground_truth_row: Some((annotation.path.clone(), positions.start + 1)),
             ground_truth: ground_truth.map(|row| row.map(|in_file: Rect| origin.to_frame(in_file))).collect(),
             source: Box::new(ImageFiles::new(images[positions].to_vec(), range.start)),
             origin,
