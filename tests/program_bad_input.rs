@@ -68,6 +68,22 @@ fn boxes_that_are_no_boxes_name_the_flag() {
 }
 
 #[test]
+fn a_refused_box_is_told_in_the_users_numbers() {
+    let scene = Scene::otb(3);
+    scene.refuses(
+        &["track", ".", "--init", "65,2,3,4"],
+        &["--init 65,2,3,4", "64x48", "first pixel is 1,1", "--origin 1"],
+    );
+    scene.refuses(&["track", "img", "--init", "64,2,3,4"], &["--init 64,2,3,4", "first pixel is 0,0"]);
+    scene.refuses(&["track", ".", "--init", "2e9,2,3,4"], &["--init 2000000000,2,3,4", "1e9"]);
+    scene.write("groundtruth_rect.txt", b"13,11,12,24\n15,99,12,24\n17,11,12,24\n");
+    scene.refuses(
+        &["track", ".", "--start", "2"],
+        &["groundtruth_rect.txt, row 2: 15,99,12,24", "frame 2 (0002.png)"],
+    );
+}
+
+#[test]
 fn odd_boxes_are_warned_of_and_tracked() {
     let scene = Scene::otb(3);
     for given in ["20,20,1,1", "-5,11,20,24", "-10,-10,200,200"] {
@@ -180,23 +196,4 @@ fn a_film_that_ffmpeg_cannot_read_is_named() {
     let scene = Scene::empty();
     scene.write("film.mp4", b"not a film at all");
     scene.refuses(&["track", "film.mp4", "--init", BOX], &["film.mp4", "ffmpeg"]);
-}
-
-#[test]
-fn sixteen_bit_and_alpha_images_are_tracked() {
-    let scene = Scene::empty();
-    for (folder, convert) in [
-        (
-            "deep",
-            (|picture| image::DynamicImage::from(picture).into_rgb16().into())
-                as fn(_) -> image::DynamicImage,
-        ),
-        ("alpha", |picture: image::RgbImage| image::DynamicImage::from(picture).into_rgba8().into()),
-    ] {
-        fs::create_dir(scene.path(folder)).unwrap();
-        for number in 1..=2 {
-            convert(picture(number)).save(scene.path(&format!("{folder}/{number}.png"))).unwrap();
-        }
-        assert_eq!(scene.accepts(&["track", folder, "--init", BOX]).stdout.lines().count(), 2);
-    }
 }
