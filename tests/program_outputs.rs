@@ -102,11 +102,13 @@ fn turned_jpeg(upright: &DynamicImage) -> Vec<u8> {
     bytes
 }
 
+type Encode = fn(DynamicImage) -> Vec<u8>;
+
 #[test]
 fn turned_deep_and_transparent_images_are_tracked_as_they_are_shown() {
     let scene = Scene::empty();
     let upright = |number| DynamicImage::from(picture(number));
-    let formats: [(&str, &str, fn(DynamicImage) -> Vec<u8>); 4] = [
+    let formats: [(&str, &str, Encode); 4] = [
         ("plain", "png", |image| png(&image)),
         ("turned", "jpg", |image| turned_jpeg(&image)),
         ("deep", "png", |image| png(&image.into_rgb16().into())),

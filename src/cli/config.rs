@@ -11,9 +11,9 @@ use infopart::{
 
 pub const EXAMPLES: &str = "\
 Examples:
-  infopart config > my.toml                     then edit it; keys left out keep the preset's value
+  infopart config > my.toml                 edit it; a key left out is the preset's
   infopart track Crossing --config my.toml
-  infopart config --preset paper                the values of the paper
+  infopart config --preset paper            the values of the paper
 
 Exit codes: 0 success, 2 no such preset or standard output cannot be written";
 

@@ -18,8 +18,8 @@ use infopart::{
 use super::{demo_folder::DemoFolder, exit::BadInput, interrupt};
 
 pub const EXAMPLES: &str = "\
-The person walks 150 frames down a street, while the legs swing, the light and the person's size change, and a young
-tree passes in front. The same tracker then follows the upper 5/8 of the first box (infopart) and all of it
+The person walks 150 frames down a street, while the legs swing, the light and the person's size change, and a \
+young tree passes in front. The same tracker then follows the upper 5/8 of the first box (infopart) and all of it \
 (whole-body), and a table of both is printed. It takes some seconds.
 
 Examples:

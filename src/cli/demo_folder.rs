@@ -91,8 +91,8 @@ impl DemoFolder {
 fn foreign(path: &Path) -> anyhow::Error {
     let path = path.display();
     BadInput(format!(
-        "--out: {path} is there already and was not made by `infopart demo`, which would overwrite it; give a new \
-         folder with --out DIR"
+        "--out: {path} is there already and was not made by `infopart demo`, which only replaces its own files; move \
+         it away, or give a new folder with --out DIR"
     ))
     .into()
 }

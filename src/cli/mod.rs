@@ -17,11 +17,10 @@ mod values;
 
 const EXAMPLES: &str = "\
 Examples:
-  infopart demo                                     needs no data: see it work first
-  infopart track Crossing --out boxes.txt           an OTB folder, first box from its ground truth
-  infopart track video.mp4 --init 120,80,40,110     a video, first box given
-  infopart track 'shots/*.png' --init 5,9,32,80 --out boxes.csv --annotate seen.mp4
-  infopart config > my.toml                         every parameter, to edit and pass with --config
+  infopart demo                                  see it work; needs no data
+  infopart track Crossing --out boxes.txt        an OTB folder
+  infopart track video.mp4 --init 120,80,40,110  a video, the first box given
+  infopart config > my.toml                      parameters, to edit for --config
 
 Exit codes:
   0    success
@@ -31,7 +30,7 @@ Exit codes:
 
 /// Tracks one person, or any other target, through a video.
 #[derive(Debug, Parser)]
-#[command(name = "infopart", version, after_help = EXAMPLES)]
+#[command(name = "infopart", version, max_term_width = 120, after_help = EXAMPLES)]
 struct Cli {
     #[command(subcommand)]
     command: Command,

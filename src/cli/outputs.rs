@@ -1,6 +1,9 @@
 //! What a run writes: rows, pictures, progress. Everything is opened before the first frame is tracked.
 
-use std::path::{Path, PathBuf};
+use std::{
+    io::{self, IsTerminal},
+    path::{Path, PathBuf},
+};
 
 use anyhow::{Context, Error, Result};
 use infopart::{
@@ -44,7 +47,9 @@ impl Outputs {
         };
         let (rows, rows_until_whole) = open_rows(args.out.as_deref(), options)?;
         let pictures = args.annotate.as_deref().map(open_pictures).transpose()?;
-        let progress = if args.quiet { Progress::hidden() } else { Progress::new(total) };
+        // A bar among rows on the same terminal would be a mess, and the rows show progress themselves.
+        let rows_on_terminal = args.out.is_none() && io::stdout().is_terminal();
+        let progress = if args.quiet || rows_on_terminal { Progress::hidden() } else { Progress::new(total) };
         // With --json the warnings are in the object, which stays the only thing on standard error.
         let warnings = (!args.json).then_some(WarningPrinter);
         Ok(Self { rows, rows_until_whole, pictures, progress, warnings })

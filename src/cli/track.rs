@@ -24,19 +24,20 @@ use super::{
 
 pub const EXAMPLES: &str = "\
 Examples:
-  infopart track Crossing --out boxes.txt           an OTB folder, first box from its ground truth
-  infopart track Jogging --target 2                 one of its several targets
-  infopart track video.mp4 --init 120,80,40,110     a video, first box given
-  infopart track 'shots/*.png' --init 5,9,32,80 --out boxes.csv --annotate seen.mp4
+  infopart track Crossing --out boxes.txt        first box from the ground truth
+  infopart track Jogging --target 2              one of its several targets
+  infopart track video.mp4 --init 120,80,40,110  a video, the first box given
+  infopart track 'shots/*.png' --init 5,9,32,80 --out a.csv --annotate seen.mp4
   infopart track Crossing --region whole --json --quiet > /dev/null
 
 Rows: one a frame from the first tracked on, which holds the first box. A lost target has a row too: the best guess.
-The summary goes to standard error. With ground truth it has R1 (percentage of frames with a centre error of at most
-20 pixels), R2 (of frames with an overlap above 0.5) and AUC (area under the success curve, from 0 to 0.952).
 
-Pictures: the box is green while tracking, orange if uncertain, red if lost; thinner the tracked part, yellow dots the
-particles, dashed white the ground truth. An annotated video has one constant rate, that of the input's first five
-frames (25 a second for images), so of an input with a variable rate it runs faster or slower than the input; the time
+Summary: on standard error. With ground truth it has R1 (percentage of frames with a centre error of at most 20 \
+pixels), R2 (of frames with an overlap above 0.5) and AUC (area under the success curve, from 0 to 0.952).
+
+Pictures: the box is green while tracking, orange if uncertain, red if lost; thinner the tracked part, yellow dots \
+the particles, dashed white the ground truth. An annotated video has one constant rate, that of the input's first \
+five frames (25 a second for images): an input of variable rate is seen faster or slower than it was. The true time \
 of each frame is in csv and jsonl rows.
 
 Parameters: --config over --preset, and --region, --particles and --seed over both.

@@ -36,9 +36,9 @@ impl Progress {
 
 fn style(total_is_known: bool) -> ProgressStyle {
     let template = if total_is_known {
-        "{bar:32.green/black.bright} {pos}/{len} frames  {msg}  {eta} left"
+        "{bar:24.green/black.bright} {pos}/{len} frames  {eta} left  {wide_msg}"
     } else {
-        "{spinner:.green} {pos} frames  {msg}"
+        "{spinner:.green} {pos} frames  {wide_msg}"
     };
     ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar())
 }
