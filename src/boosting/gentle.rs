@@ -13,7 +13,7 @@ use rayon::prelude::*;
 
 use super::{
     memory::{Label, SampleMemory},
-    stump::{Split, Stump, Weighted, best_split, stump_of},
+    stump::{LANES, Rank, Split, Stump, TIED, best_splits, low_side, stump},
 };
 
 /// F: a sum of stumps.
@@ -34,21 +34,31 @@ impl StrongClassifier {
     }
 }
 
-/// Trains strong classifiers; holds the scratch that training needs.
+/// How a strong classifier is trained.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BoostingOptions {
+    /// s: rounds, and so stumps.
+    pub rounds: usize,
+    /// Start with both labels weighing the same in total, however many samples each has; otherwise each sample with 1 / N.
+    pub balanced: bool,
+}
+
+/// Trains strong classifiers; holds the scratch that training needs, so that a second training of the same size
+/// allocates nothing.
 #[derive(Debug, Clone)]
 pub struct GentleAdaBoost {
-    rounds: usize,
-    balanced: bool,
-    sorted: Vec<(f32, u32)>,
-    samples: Vec<Weighted>,
-    splits: Vec<Option<Split>>,
+    options: BoostingOptions,
+    /// omega y of every sample; the weights sum to 1.
+    signed: Vec<f64>,
+    /// For each block of features, the samples by rank.
+    ranks: Vec<Rank>,
+    splits: Vec<[Split; LANES]>,
 }
 
 impl GentleAdaBoost {
-    /// A trainer of classifiers of `rounds` stumps. `balanced` starts with both labels weighing the same in total, however
-    /// many samples each has; otherwise every sample starts with 1 / N.
-    pub fn new(rounds: usize, balanced: bool) -> Self {
-        Self { rounds, balanced, sorted: Vec::new(), samples: Vec::new(), splits: Vec::new() }
+    /// A trainer.
+    pub fn new(options: BoostingOptions) -> Self {
+        Self { options, signed: Vec::new(), ranks: Vec::new(), splits: Vec::new() }
     }
 
     /// Trains on all samples of the memory. Without samples the classifier is empty and scores 0.
@@ -57,25 +67,39 @@ impl GentleAdaBoost {
         if memory.is_empty() {
             return;
         }
-        self.sort(memory);
+        self.rank(memory);
         self.start_weights(memory.labels());
-        for _ in 0..self.rounds {
+        for _ in 0..self.options.rounds {
             let stump = self.best_stump(memory);
-            self.reweigh(memory, &stump);
             out.stumps.push(stump);
+            self.reweigh(memory, &stump);
         }
     }
 
-    fn sort(&mut self, memory: &SampleMemory) {
+    /// Sorts the samples by each feature, as keys that hold value and sample.
+    fn rank(&mut self, memory: &SampleMemory) {
         let n = memory.len();
-        self.sorted.resize(memory.features() * n, (0.0, 0));
-        self.splits.resize(memory.features(), None);
-        self.sorted.par_chunks_mut(n).enumerate().for_each(|(feature, sorted)| {
-            for (pair, (value, sample)) in sorted.iter_mut().zip(memory.row(feature).iter().zip(0..)) {
-                *pair = (*value, sample);
-            }
-            sorted.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        });
+        let blocks = memory.features().div_ceil(LANES);
+        self.ranks.resize(blocks * n, [0; LANES]);
+        self.splits.resize(blocks, [Split { gain: -1.0, last_low: 0 }; LANES]);
+        self.ranks.par_chunks_mut(n).enumerate().with_min_len(4).for_each_init(
+            || Vec::with_capacity(n),
+            |keys: &mut Vec<u64>, (block, ranks)| {
+                for lane in 0..LANES {
+                    // The last block repeats the last feature, which then loses every tie to itself.
+                    let row = memory.row((block * LANES + lane).min(memory.features() - 1));
+                    keys.clear();
+                    keys.extend(row.iter().zip(0..).map(|(value, sample)| sort_key(*value, sample)));
+                    keys.sort_unstable();
+                    for (i, rank) in ranks.iter_mut().enumerate() {
+                        let sample = keys[i] as u32;
+                        let next = keys.get(i + 1).map(|key| row[*key as u32 as usize]);
+                        let tied = next == Some(row[sample as usize]);
+                        rank[lane] = sample | if tied { TIED } else { 0 };
+                    }
+                }
+            },
+        );
     }
 
     /// Step 1.
@@ -83,65 +107,68 @@ impl GentleAdaBoost {
         let targets = labels.iter().filter(|l| **l == Label::Target).count();
         let of_each = [labels.len() - targets, targets];
         let present = of_each.iter().filter(|count| **count > 0).count() as f64;
-        self.samples.clear();
-        self.samples.extend(labels.iter().map(|label| {
-            let weight = if self.balanced {
+        self.signed.clear();
+        self.signed.extend(labels.iter().map(|label| {
+            let weight = if self.options.balanced {
                 1.0 / (present * of_each[usize::from(*label == Label::Target)] as f64)
             } else {
                 1.0 / labels.len() as f64
             };
-            Weighted { weight, signed: weight * label.sign() }
+            weight * label.sign()
         }));
     }
 
     /// Step 2.
     fn best_stump(&mut self, memory: &SampleMemory) -> Stump {
-        let n = memory.len();
-        let total = self.samples.iter().fold(Weighted::default(), |sum, s| Weighted {
-            weight: sum.weight + s.weight,
-            signed: sum.signed + s.signed,
-        });
-        let samples = &self.samples;
+        let (n, signed) = (memory.len(), &self.signed);
         self.splits
             .par_iter_mut()
-            .zip(self.sorted.par_chunks(n))
-            .with_min_len(16)
-            .for_each(|(split, sorted)| *split = best_split(sorted, samples, total));
+            .zip(self.ranks.par_chunks(n))
+            .with_min_len(8)
+            .for_each(|(splits, ranks)| *splits = best_splits(ranks, signed));
         let mut best: Option<(usize, Split)> = None;
-        for (feature, split) in self.splits.iter().enumerate() {
-            if let Some(split) = split
-                && best.is_none_or(|(_, best)| split.gain > best.gain)
-            {
+        for (feature, split) in self.splits.iter().flatten().enumerate() {
+            if split.gain > best.map_or(-1.0, |(_, best)| best.gain) {
                 best = Some((feature, *split));
             }
         }
+        let all = (1.0, signed.iter().sum::<f64>());
         match best {
-            Some((feature, split)) => stump_of(feature, &split, &self.sorted[feature * n..][..n], total),
+            Some((feature, split)) => {
+                let (ranks, lane) = (&self.ranks[feature / LANES * n..][..n], feature % LANES);
+                let value = |rank: usize| memory.row(feature)[(ranks[rank][lane] & !TIED) as usize];
+                let sides = (value(split.last_low), value(split.last_low + 1));
+                stump(feature, sides, low_side(ranks, lane, split.last_low, signed), all)
+            }
             None => {
-                let answer = (total.signed / total.weight) as f32;
+                let answer = all.1 as f32;
                 Stump { feature: 0, threshold: f32::INFINITY, low: answer, high: answer }
             }
         }
     }
 
-    /// Step 3. The floor keeps every weight positive, so that no side of a split weighs nothing.
+    /// Step 3. The floor keeps every weight positive.
     fn reweigh(&mut self, memory: &SampleMemory, stump: &Stump) {
-        let (on_low, on_high) = (f64::from(stump.low), f64::from(stump.high));
-        let factors = [on_low, on_high].map(|f| [f.exp(), (-f).exp()]);
+        let factors = [stump.low, stump.high].map(|f| [f64::from(f).exp(), f64::from(-f).exp()]);
+        let row = memory.row(stump.feature);
         let mut sum = 0.0;
-        for ((sample, label), value) in
-            self.samples.iter_mut().zip(memory.labels()).zip(memory.row(stump.feature))
-        {
+        for ((signed, label), value) in self.signed.iter_mut().zip(memory.labels()).zip(row) {
             let side = usize::from(*value > stump.threshold);
-            sample.weight *= factors[side][usize::from(*label == Label::Target)];
-            sum += sample.weight;
+            *signed *= factors[side][usize::from(*label == Label::Target)];
+            sum += signed.abs();
         }
         let floor = f64::MIN_POSITIVE.sqrt();
-        for (sample, label) in self.samples.iter_mut().zip(memory.labels()) {
-            sample.weight = (sample.weight / sum).max(floor);
-            sample.signed = sample.weight * label.sign();
+        for signed in &mut self.signed {
+            *signed = signed.signum() * (signed.abs() / sum).max(floor);
         }
     }
+}
+
+/// A key that sorts by value, then by sample.
+fn sort_key(value: f32, sample: u32) -> u64 {
+    let bits = value.to_bits();
+    let ordered = if bits >> 31 == 1 { !bits } else { bits | 1 << 31 };
+    u64::from(ordered) << 32 | u64::from(sample)
 }
 
 #[cfg(test)]
@@ -158,7 +185,7 @@ mod tests {
 
     fn train(samples: &[(Vec<f32>, Label)], rounds: usize, balanced: bool) -> StrongClassifier {
         let mut classifier = StrongClassifier::default();
-        GentleAdaBoost::new(rounds, balanced).train(&memory_of(samples), &mut classifier);
+        GentleAdaBoost::new(BoostingOptions { rounds, balanced }).train(&memory_of(samples), &mut classifier);
         classifier
     }
 
@@ -250,6 +277,13 @@ mod tests {
     }
 
     #[test]
+    fn sort_keys_follow_the_values() {
+        let values = [f32::NEG_INFINITY, -2.0, -1.0, 0.0, 0.5, 3.0, f32::INFINITY];
+        assert!(values.map(|v| sort_key(v, 9)).is_sorted());
+        assert!(sort_key(1.0, 3) < sort_key(1.0, 4));
+    }
+
+    #[test]
     fn ties_go_to_the_smallest_feature_and_threshold() {
         let samples = vec![
             (vec![0.0, 0.0, 0.0], Label::Background),
@@ -284,7 +318,8 @@ mod tests {
             assert_eq!(train(&only, 3, balanced).score(|_| 1.0), 3.0);
         }
         let mut classifier = StrongClassifier::default();
-        GentleAdaBoost::new(3, true).train(&SampleMemory::new(4, 2, 2), &mut classifier);
+        GentleAdaBoost::new(BoostingOptions { rounds: 3, balanced: true })
+            .train(&SampleMemory::new(4, 2, 2), &mut classifier);
         assert_eq!(classifier.score(|_| 1.0), 0.0);
     }
 

@@ -4,6 +4,6 @@ mod gentle;
 mod memory;
 mod stump;
 
-pub use gentle::{GentleAdaBoost, StrongClassifier};
+pub use gentle::{BoostingOptions, GentleAdaBoost, StrongClassifier};
 pub use memory::{Label, SampleMemory};
 pub use stump::Stump;

@@ -13,7 +13,7 @@ use std::sync::Arc;
 
 use crate::{
     bayes::particle::{ParticleEstimate, ParticleFilter, ParticleFilterOptions},
-    boosting::{GentleAdaBoost, SampleMemory, StrongClassifier},
+    boosting::{BoostingOptions, GentleAdaBoost, SampleMemory, StrongClassifier},
     features::{
         haar::HaarFeature,
         hog::Hog,
@@ -165,7 +165,10 @@ impl Target {
             frame: 0,
             sets: (0..parameters.particle_sets).map(|set| particle_set(parameters, &part, set)).collect(),
             appearance: Appearance::new(parameters, pool, Hog::of(integrals, &template)),
-            trainer: GentleAdaBoost::new(parameters.stumps, parameters.balanced_labels),
+            trainer: GentleAdaBoost::new(BoostingOptions {
+                rounds: parameters.stumps,
+                balanced: parameters.balanced_labels,
+            }),
             classifier: StrongClassifier::default(),
             memory: SampleMemory::new(
                 parameters.feature_pool,
