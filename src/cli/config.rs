@@ -11,7 +11,7 @@ use infopart::{
 
 pub const EXAMPLES: &str = "\
 Examples:
-  infopart config > my.toml                 edit it; a key left out is the preset's
+  infopart config > my.toml                 then edit it
   infopart track Crossing --config my.toml
   infopart config --preset paper            the values of the paper
 

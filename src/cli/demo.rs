@@ -27,10 +27,10 @@ Examples:
   infopart demo --out /tmp/walk --seed 7
 
 Written into DIR:
-  walker/            the person as an OTB folder: 150 pictures and the exact boxes
+  walker/            an OTB folder: 150 pictures and exact boxes
   results/           boxes of both trackers: infopart.txt, whole-body.txt
   contact_sheet.png  the same frames of both, annotated
-An earlier demo's files are replaced; a folder that holds anything else is refused.
+An earlier demo is replaced; a folder that holds anything else is refused.
 
 Exit codes: 0 success, 2 DIR cannot be used, 130 interrupted with Ctrl-C";
 

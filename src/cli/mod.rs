@@ -20,7 +20,7 @@ Examples:
   infopart demo                                  see it work; needs no data
   infopart track Crossing --out boxes.txt        an OTB folder
   infopart track video.mp4 --init 120,80,40,110  a video, the first box given
-  infopart config > my.toml                      parameters, to edit for --config
+  infopart config > my.toml                      parameters to edit
 
 Exit codes:
   0    success
