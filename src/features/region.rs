@@ -1,7 +1,8 @@
 //! Integral images of a search region.
 //!
 //! Steps, each frame:
-//! 1. cut the region out of the frame, repeating edge pixels outside it, averaging `step` x `step` pixels to a cell,
+//! 1. cut the region out of the frame, repeating edge pixels outside it; a cell is the mean of its `step` x `step` pixels, or of
+//!    4 x 4 of them evenly spaced where there are more, so that the cost follows the cells and not the pixels,
 //! 2. one integral image a colour channel (exact, u32),
 //! 3. gradient of luminance by central differences; its magnitude, split between the two nearest of 8 unsigned
 //!    orientation bins, goes into 8 interleaved integral images (exact, u32).
@@ -16,6 +17,9 @@ use crate::{
 
 /// Colour channels that Haar-like features may read.
 pub const CHANNELS: usize = 3;
+
+/// Pixels along a cell's side that are averaged at most.
+const SAMPLES_PER_SIDE: usize = 4;
 
 /// A region of a frame in whole pixels. It may reach beyond the frame, where edge pixels are repeated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -188,21 +192,23 @@ impl RegionIntegrals {
         let size = frame.format().bytes_per_pixel();
         let offsets = frame.format().rgb_offsets();
         let (last_x, last_y) = (frame.width() as i64 - 1, frame.height() as i64 - 1);
-        let pixels_per_cell = (step * step) as u32;
+        let per_side = step.min(SAMPLES_PER_SIDE);
+        let samples = (per_side * per_side) as u32;
+        let sample = |cell: usize, i: usize| (cell * step + (2 * i + 1) * step / (2 * per_side)) as i64;
         for row in 0..height {
             for column in 0..width {
                 let mut sums = [0u32; CHANNELS];
-                for dy in 0..step {
-                    let pixels = frame.row((y + (row * step + dy) as i64).clamp(0, last_y) as usize);
-                    for dx in 0..step {
-                        let at = (x + (column * step + dx) as i64).clamp(0, last_x) as usize * size;
+                for dy in 0..per_side {
+                    let pixels = frame.row((y + sample(row, dy)).clamp(0, last_y) as usize);
+                    for dx in 0..per_side {
+                        let at = (x + sample(column, dx)).clamp(0, last_x) as usize * size;
                         for (sum, offset) in sums.iter_mut().zip(offsets).take(self.channels) {
                             *sum += u32::from(pixels[at + offset]);
                         }
                     }
                 }
                 for (cells, sum) in self.cells.iter_mut().zip(sums).take(self.channels) {
-                    cells[row * width + column] = ((sum + pixels_per_cell / 2) / pixels_per_cell) as u8;
+                    cells[row * width + column] = ((sum + samples / 2) / samples) as u8;
                 }
             }
         }
@@ -361,6 +367,16 @@ mod tests {
         let mut integrals = RegionIntegrals::default();
         integrals.compute(&frame.view(), SearchRegion { x: 0, y: 0, width: 2, height: 1, step: 2 });
         assert_eq!(integrals.colour(0), &[0, 0, 0, 0, 8, 8 + 20]);
+    }
+
+    #[test]
+    fn a_cell_of_eight_by_eight_pixels_is_the_mean_of_sixteen_of_them() {
+        let pixels: Vec<u8> = (0..64).map(|i| (i % 8 + i / 8 * 10) as u8).collect();
+        let frame = Frame::new(pixels, 8, 8, PixelFormat::Gray).unwrap();
+        let mut integrals = RegionIntegrals::default();
+        integrals.compute(&frame.view(), SearchRegion { x: 0, y: 0, width: 1, height: 1, step: 8 });
+        // Columns and rows 1, 3, 5, 7.
+        assert_eq!(integrals.colour(0)[3], 4 + 40);
     }
 
     #[test]

@@ -102,7 +102,7 @@ parameters! {
     region: Region = Region::Part, "part, whole or the upper fraction in (0, 1]",
         "What is tracked of the box, from its top edge down. `part` is head and torso of a person, the upper 5/8.";
 
-    particles: usize = 400, [1, 100_000], "particles",
+    particles: usize = 800, [1, 100_000], "particles",
         "N_s: particles, all sets together.";
     particle_sets: usize = 1, [1, 32], "sets",
         "n: independent particle sets that share the particles; their means are weighted by mean likelihood.";
