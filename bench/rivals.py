@@ -3,7 +3,8 @@
 
 For each sequence and each round every tracker runs once, the order turning by one from round to round. Only updates
 are timed: reading and decoding frames and the first frame are not. The ratio of a sequence is the median over
-rounds of (rival's time / InfoPart's time); the ratio of all is the geometric mean over sequences.
+rounds of (rival's time / InfoPart's time); the ratio of all is the geometric mean over sequences. A tracker that
+says it has lost the target may return at once: its time then says little, and --json has how often it said so.
 
 Needs: pip install -r bench/requirements.txt (and dlib-bin for --rivals dlib), and `cargo build --release`.
 Data: the folder given with --data or INFOPART_DATA, which holds otb/ and people/; else ../shared/data beside the
