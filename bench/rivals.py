@@ -38,7 +38,7 @@ Run = namedtuple("Run", "seconds boxes lost")
 
 
 def fail(message):
-    print(f"rivals.py: {message}", file=sys.stderr)
+    print(f"{Path(sys.argv[0]).name}: {message}", file=sys.stderr)
     sys.exit(2)
 
 
@@ -52,14 +52,14 @@ def data_folder(given):
     return folder
 
 
-def find_sequence(data, name):
-    """NAME, or NAME-K for target K of a folder with groundtruth_rect.K.txt."""
+def locate(data, name):
+    """NAME, or NAME-K for target K of a folder with groundtruth_rect.K.txt: its folder, target and ground-truth file."""
     plain, _, target = name.rpartition("-")
     for kind in KINDS:
         if (data / kind / name / "groundtruth_rect.txt").is_file():
-            return read_sequence(name, data / kind / name, None, "groundtruth_rect.txt")
+            return data / kind / name, None, "groundtruth_rect.txt"
         if plain and (data / kind / plain / f"groundtruth_rect.{target}.txt").is_file():
-            return read_sequence(name, data / kind / plain, target, f"groundtruth_rect.{target}.txt")
+            return data / kind / plain, target, f"groundtruth_rect.{target}.txt"
     fail(f"no sequence {name} in {data}; use NAME, or NAME-K for a folder of several targets")
 
 
@@ -255,7 +255,7 @@ def main():
     if not os.access(options.infopart, os.X_OK):
         fail(f"no program at {options.infopart}: run `cargo build --release`, or give its path with --infopart")
     data = data_folder(options.data)
-    sequences = [find_sequence(data, name) for name in options.sequences]
+    sequences = [read_sequence(name, *locate(data, name)) for name in options.sequences]
     names = [OURS, *options.rivals]
     for name in options.rivals:
         make_rival(name)  # Fails now rather than in the middle.

@@ -225,7 +225,6 @@ fn a_refused_box_leaves_the_tracker_as_it_was() {
 }
 
 #[test]
-#[ignore = "takes far too long: the cells of the search region average every pixel of the box, outside the frame too"]
 fn a_box_far_larger_than_the_frame_is_tracked() {
     let frames = moving_block(40, 30, 3, PixelFormat::Rgb);
     for side in [1e5, 1e8] {

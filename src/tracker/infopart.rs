@@ -40,6 +40,9 @@ use super::{
 /// Cells that a search region may have at most; larger ones are averaged down further.
 const MAX_REGION_CELLS: f64 = 1_048_576.0;
 
+/// Cells along a side of a search region at most.
+const MAX_REGION_SIDE: f64 = 16_384.0;
+
 /// The InfoPart tracker.
 pub struct InfoPart {
     parameters: CheckedParameters,
@@ -315,7 +318,8 @@ fn particle_set(parameters: &CheckedParameters, part: &Rect, set: usize) -> Part
 fn search_region(extent: Rect, part: &Rect, max_part_cells: usize) -> SearchRegion {
     let for_part = (part.area() / max_part_cells as f64).sqrt();
     let for_region = (extent.area() / MAX_REGION_CELLS).sqrt();
-    SearchRegion::around(extent, for_part.max(for_region).ceil().max(1.0) as usize)
+    let for_side = extent.w.max(extent.h) / MAX_REGION_SIDE;
+    SearchRegion::around(extent, for_part.max(for_region).max(for_side).ceil().max(1.0) as usize)
 }
 
 /// Mean and covariance of a mixture of sets, each weighted by its mean likelihood.
