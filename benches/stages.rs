@@ -12,7 +12,7 @@ use infopart::{
         random_walk::RandomWalk,
         resampling::Resampling,
     },
-    boosting::{GentleAdaBoost, Label, SampleMemory, StrongClassifier},
+    boosting::{BoostingOptions, GentleAdaBoost, Label, SampleMemory, StrongClassifier},
     features::{
         haar::HaarFeature,
         hog::Hog,
@@ -27,11 +27,12 @@ use rand::{Rng, RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 // The sizes of the default parameters.
-const PARTICLES: usize = 400;
+const PARTICLES: usize = 800;
 const POOL: usize = 300;
 const STUMPS: usize = 40;
 const FIRST_SAMPLES: usize = 90;
 const RECENT_SAMPLES: usize = 400;
+const BOOSTING: BoostingOptions = BoostingOptions { rounds: STUMPS, balanced: true };
 
 /// Frames of the walker, and the person's box in each.
 fn walk() -> (Vec<Frame>, Vec<Rect>) {
@@ -111,14 +112,14 @@ fn features(c: &mut Criterion) {
     });
     let integrals = &scene.integrals;
     let read_by_stumps = &scene.pool()[..STUMPS];
-    c.bench_function("Haar-like features, 40 x 400 boxes", |b| {
+    c.bench_function("Haar-like features, 40 x 800 boxes", |b| {
         b.iter(|| {
             let of = |hypothesis| read_by_stumps.iter().map(move |f| f.evaluate(integrals, hypothesis));
             hypotheses.iter().flat_map(of).sum::<f32>()
         });
     });
     let template = Hog::of(integrals, &hypotheses[0]);
-    c.bench_function("HOG and its distance, 400 boxes", |b| {
+    c.bench_function("HOG and its distance, 800 boxes", |b| {
         let distance = |hypothesis| Hog::of(integrals, hypothesis).squared_distance(&template);
         b.iter(|| hypotheses.iter().map(distance).sum::<f32>());
     });
@@ -131,8 +132,8 @@ fn likelihood(c: &mut Criterion) {
     let pool = scene.pool();
     let template = Hog::of(integrals, &integrals.to_region(scene.part));
     let mut classifier = StrongClassifier::default();
-    GentleAdaBoost::new(STUMPS, true).train(&memory(FIRST_SAMPLES, &mut rng()), &mut classifier);
-    c.bench_function("likelihood, 400 boxes, 1 thread", |b| {
+    GentleAdaBoost::new(BOOSTING).train(&memory(FIRST_SAMPLES, &mut rng()), &mut classifier);
+    c.bench_function("likelihood, 800 boxes, 1 thread", |b| {
         b.iter(|| {
             let of = |hypothesis: &BoxInRegion| {
                 let score = classifier.score(|k| pool[k].evaluate(integrals, hypothesis));
@@ -150,7 +151,7 @@ fn training(c: &mut Criterion) {
         ("training, 490 samples x 300 features x 40 rounds", FIRST_SAMPLES + RECENT_SAMPLES),
     ] {
         let memory = memory(samples, &mut rng());
-        let mut trainer = GentleAdaBoost::new(STUMPS, true);
+        let mut trainer = GentleAdaBoost::new(BOOSTING);
         let mut classifier = StrongClassifier::default();
         c.bench_function(name, |b| b.iter(|| trainer.train(black_box(&memory), &mut classifier)));
     }
@@ -173,17 +174,17 @@ fn filtering(c: &mut Criterion) {
     let sum: f64 = raw.iter().sum();
     let weights: Vec<f64> = raw.iter().map(|weight| weight / sum).collect();
     for (name, scheme) in [
-        ("resampling, multinomial, 400 particles", Resampling::Multinomial),
-        ("resampling, stratified, 400 particles", Resampling::Stratified),
-        ("resampling, systematic, 400 particles", Resampling::Systematic),
-        ("resampling, residual, 400 particles", Resampling::Residual),
+        ("resampling, multinomial, 800 particles", Resampling::Multinomial),
+        ("resampling, stratified, 800 particles", Resampling::Stratified),
+        ("resampling, systematic, 800 particles", Resampling::Systematic),
+        ("resampling, residual, 800 particles", Resampling::Residual),
     ] {
         let (mut rng, mut ancestors) = (rng(), Vec::with_capacity(PARTICLES));
         c.bench_function(name, |b| b.iter(|| scheme.draw(black_box(&weights), &mut rng, &mut ancestors)));
     }
     let walk = RandomWalk::new(State::<3>::new(1.0, 1.0, 0.1));
     let start = ParticleFilter::new(vec![State::zeros(); PARTICLES], ParticleFilterOptions::default());
-    c.bench_function("particle filter, 400 particles, trivial likelihood", |b| {
+    c.bench_function("particle filter, 800 particles, trivial likelihood", |b| {
         let mut rng = rng();
         b.iter_batched_ref(
             || start.clone(),
