@@ -10,6 +10,7 @@ import json
 import os
 import statistics
 import subprocess
+import tempfile
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -41,7 +42,9 @@ def arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     add = parser.add_argument
     add("--sequences", nargs="+", default=["people8"], metavar="NAME", help="people8, other7, NAME or NAME-K [default: people8]")
-    add("--variants", nargs="+", default=list(VARIANTS), choices=VARIANTS, help="[default: all]")
+    add("--variants", nargs="*", default=list(VARIANTS), choices=VARIANTS, help="[default: all]")
+    add("--set", nargs="+", default=[], metavar="KEY=VALUE[,...]", help="more variants: the default with other parameters")
+    add("--means", action="store_true", help="a row a variant with its mean AUC on each sequence, instead of whole cells")
     add("--seeds", type=int, default=5, help="seeds 1 to this [default: 5]")
     add("--infopart", default=PROJECT / "target/release/infopart", help="the program [default: target/release/infopart]")
     add("--data", help="the folder that holds otb/ and people/ [default: INFOPART_DATA]")
@@ -52,23 +55,44 @@ def arguments():
     return options
 
 
+def write_configurations(settings, folder):
+    """A configuration file for each KEY=VALUE[,...], and the flags that use it."""
+    flags = {}
+    for number, setting in enumerate(settings):
+        path = Path(folder) / f"{number}.toml"
+        path.write_text("\n".join(setting.split(",")) + "\n")
+        flags[setting] = ["--config", path]
+    return flags
+
+
 def main():
     options = arguments()
+    with tempfile.TemporaryDirectory() as folder:
+        compare(options, write_configurations(options.set, folder))
+
+
+def compare(options, configured):
+    ways = {name: VARIANTS[name] for name in options.variants} | configured
     data = data_folder(options.data)
     names = [name for given in options.sequences for name in LISTS.get(given, [given])]
     seeds = range(1, options.seeds + 1)
     jobs = [
-        (options.infopart, locate(data, name), VARIANTS[variant], seed)
-        for name in names for variant in options.variants for seed in seeds
+        (options.infopart, locate(data, name), flags, seed)
+        for name in names for flags in ways.values() for seed in seeds
     ]
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         passes = iter(list(pool.map(track, jobs)))
-    found = {(name, variant): [next(passes) for _ in seeds] for name in names for variant in options.variants}
-    rows = [[name, *(cell(found[name, variant]) for variant in options.variants)] for name in names]
-    mean = lambda variant: statistics.mean(s["auc"] for name in names for s in found[name, variant])
-    rows.append(["mean AUC", *(f"{mean(variant):.3f}" for variant in options.variants)])
-    print(f"{OURS}, seeds 1-{options.seeds}: R1 (worst seed) / R2 / AUC ± standard deviation over seeds\n")
-    print(table(["sequence", *options.variants], rows))
+    found = {(name, way): [next(passes) for _ in seeds] for name in names for way in ways}
+    aucs = lambda name, way: [scores["auc"] for scores in found[name, way]]
+    means = {way: statistics.mean(auc for name in names for auc in aucs(name, way)) for way in ways}
+    if options.means:
+        print(f"{OURS}, seeds 1-{options.seeds}: mean AUC\n")
+        row = lambda way: [*(f"{statistics.mean(aucs(name, way)):.3f}" for name in names), f"{means[way]:.3f}"]
+        print(table(["", *names, "mean"], [[way, *row(way)] for way in ways]))
+    else:
+        print(f"{OURS}, seeds 1-{options.seeds}: R1 (worst seed) / R2 / AUC ± standard deviation over seeds\n")
+        rows = [[name, *(cell(found[name, way]) for way in ways)] for name in names]
+        print(table(["sequence", *ways], [*rows, ["mean AUC", *(f"{mean:.3f}" for mean in means.values())]]))
 
 
 if __name__ == "__main__":
