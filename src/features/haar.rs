@@ -2,7 +2,8 @@
 //!
 //! The masks are the usual 2-, 3- and 4-rectangle ones, slid over positions and sizes inside the tracked region, on each
 //! colour channel. A feature is kept in the region's own coordinates and evaluated scaled at the hypothesis, on integral
-//! images: means instead of sums make that equal to resizing the hypothesis first, up to interpolation.
+//! images: means instead of sums make that equal to resizing the hypothesis first, up to interpolation. On the tests' texture the
+//! difference is 6 to 13 % (RMS of 300 features over their RMS, hypotheses of 0.8 to 2 times the first size).
 
 use rand::{Rng, RngExt};
 
@@ -235,7 +236,7 @@ mod tests {
         }
     }
 
-    /// How far scaled evaluation is from cropping and resizing first: stated here, and bounded.
+    /// Bounds the difference that the module states.
     #[test]
     fn scaled_evaluation_is_near_cropping_and_resizing() {
         let frame = reference::textured_frame(120, 120, PixelFormat::Rgb);
@@ -256,7 +257,7 @@ mod tests {
                 energy += cropped * cropped;
             }
             let relative = (squares / energy).sqrt();
-            assert!(relative < 0.25, "scale {scale}: relative difference {relative}");
+            assert!(relative < 0.15, "scale {scale}: relative difference {relative}");
         }
     }
 

@@ -4,6 +4,9 @@
 //! 1. cut the box into 4 x 4 cells, borders at the nearest region cell,
 //! 2. in each, the mean gradient magnitude of each of 8 unsigned orientation bins,
 //! 3. the 128 numbers as one block: L2 norm 1, clipped at 0.2, L2 norm 1 again.
+//!
+//! Evaluated scaled at a hypothesis instead of on a resized crop: on the tests' texture, at 0.8 to 2 times the first size,
+//! the two differ by a squared distance of 0.04 to 0.15, of 2 at most.
 
 use super::region::{BoxInRegion, RegionIntegrals};
 
@@ -147,7 +150,7 @@ mod tests {
         assert!(of(1).squared_distance(&of(2)) < 1e-3);
     }
 
-    /// How far scaled evaluation is from cropping and resizing first (of 2 at most): stated here, and bounded.
+    /// Bounds the difference that the module states.
     #[test]
     fn scaled_evaluation_is_near_cropping_and_resizing() {
         let frame = reference::textured_frame(120, 120, PixelFormat::Gray);
@@ -157,7 +160,7 @@ mod tests {
             let scaled = describe(&frame, hypothesis);
             let cropped = describe(&resized, Rect::new(0.0, 0.0, 24.0, 32.0));
             let d = scaled.squared_distance(&cropped);
-            assert!(d < 0.2, "scale {scale}: squared distance {d}");
+            assert!(d < 0.16, "scale {scale}: squared distance {d}");
         }
     }
 

@@ -362,6 +362,17 @@ mod tests {
     }
 
     #[test]
+    fn a_whole_frame_has_the_integral_image_that_imageproc_computes() {
+        let frame = textured(23, 17, PixelFormat::Gray);
+        let mut integrals = RegionIntegrals::default();
+        integrals.compute(&frame.view(), SearchRegion { x: 0, y: 0, width: 23, height: 17, step: 1 });
+        let grey =
+            image::GrayImage::from_fn(23, 17, |x, y| image::Luma([frame.view().row(y as usize)[x as usize]]));
+        let theirs = imageproc::integral_image::integral_image::<_, u32>(&grey);
+        assert_eq!(integrals.colour(0), theirs.as_raw().as_slice());
+    }
+
+    #[test]
     fn a_cell_of_two_by_two_pixels_is_their_rounded_mean() {
         let frame = Frame::new(vec![1, 2, 3, 4, 10, 20, 30, 43], 4, 2, PixelFormat::Gray).unwrap();
         let mut integrals = RegionIntegrals::default();
