@@ -8,8 +8,8 @@ const TRACKING: f64 = 0.5;
 const LOST: f64 = 0.2;
 
 /// Log-odds of an overlap above one half at score 0 and HOG distance 0; these three are the logistic regression over
-/// the frames of fifteen real sequences and three seeds, each sequence weighing the same: eight of people by their
-/// part, seven others by the whole box.
+/// the frames of sixteen real sequences and three seeds, each sequence weighing the same: eight of people by their
+/// part, eight others by the whole box.
 const INTERCEPT: f64 = 1.9;
 /// What a mean stump of 1 (every stump certain of the target) adds.
 const PER_MEAN_STUMP: f64 = 3.8;
