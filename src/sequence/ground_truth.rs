@@ -15,8 +15,7 @@ use crate::geometry::Rect;
 /// [`SequenceError::Io`] if the file cannot be read; [`SequenceError::GroundTruth`], naming the line, if a row has
 /// letters, infinite numbers, or more or fewer than four numbers, or is blank with rows after it.
 pub fn read_ground_truth(path: &Path) -> Result<Vec<Option<Rect>>, SequenceError> {
-    let bytes = std::fs::read(path).map_err(|source| SequenceError::Io { path: path.to_owned(), source })?;
-    parse_ground_truth(&String::from_utf8_lossy(&bytes), path)
+    Ok(present(read_boxes(path)?))
 }
 
 /// Parses the text of a ground truth file; `path` only names it in errors. See [`read_ground_truth`].
@@ -24,6 +23,24 @@ pub fn read_ground_truth(path: &Path) -> Result<Vec<Option<Rect>>, SequenceError
 /// # Errors
 /// [`SequenceError::GroundTruth`], as [`read_ground_truth`].
 pub fn parse_ground_truth(text: &str, path: &Path) -> Result<Vec<Option<Rect>>, SequenceError> {
+    Ok(present(parse_boxes(text, path)?))
+}
+
+/// Reads the rows of a ground truth or result file as they stand: absent targets (NaN) and boxes without area among
+/// them, for whoever has rules of their own for these.
+///
+/// # Errors
+/// As [`read_ground_truth`].
+pub fn read_boxes(path: &Path) -> Result<Vec<Rect>, SequenceError> {
+    let bytes = std::fs::read(path).map_err(|source| SequenceError::Io { path: path.to_owned(), source })?;
+    parse_boxes(&String::from_utf8_lossy(&bytes), path)
+}
+
+/// Parses the text of [`read_boxes`]; `path` only names it in errors.
+///
+/// # Errors
+/// [`SequenceError::GroundTruth`], as [`read_ground_truth`].
+pub fn parse_boxes(text: &str, path: &Path) -> Result<Vec<Rect>, SequenceError> {
     let rows = text.trim_start_matches('\u{feff}').trim_end();
     rows.lines()
         .enumerate()
@@ -38,13 +55,16 @@ pub fn parse_ground_truth(text: &str, path: &Path) -> Result<Vec<Option<Rect>>, 
         .collect()
 }
 
-fn row_in_file(line: &str) -> Result<Option<Rect>, RowProblem> {
+fn present(rows: Vec<Rect>) -> Vec<Option<Rect>> {
+    rows.into_iter().map(|row| row.is_proper().then_some(row)).collect()
+}
+
+fn row_in_file(line: &str) -> Result<Rect, RowProblem> {
     let numbers = numbers_of(line)?;
     let [x, y, w, h] = numbers[..] else {
         return Err(RowProblem::Count(numbers.len()));
     };
-    let row = Rect::new(x, y, w, h);
-    Ok(row.is_proper().then_some(row))
+    Ok(Rect::new(x, y, w, h))
 }
 
 fn numbers_of(line: &str) -> Result<Vec<f64>, RowProblem> {

@@ -35,7 +35,7 @@ mod video;
 mod walker;
 
 pub use error::{RowProblem, SequenceError};
-pub use ground_truth::{parse_ground_truth, read_ground_truth};
+pub use ground_truth::{parse_boxes, parse_ground_truth, read_boxes, read_ground_truth};
 pub use open::open;
 pub use walker::{Occluder, Walker, WalkerOptions};
 

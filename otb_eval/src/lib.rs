@@ -1,0 +1,2 @@
+//! Runs trackers over the Object Tracking Benchmark and scores them exactly as each toolkit in use would.
+#![deny(missing_docs)]

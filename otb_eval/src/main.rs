@@ -1,0 +1,3 @@
+//! The `otb_eval` program.
+
+fn main() {}
