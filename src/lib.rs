@@ -40,6 +40,7 @@ pub mod frame;
 pub mod geometry;
 pub mod metrics;
 pub mod output;
+pub mod program;
 pub mod run;
 pub mod sequence;
 pub mod tracker;

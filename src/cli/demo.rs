@@ -10,12 +10,13 @@ use infopart::{
         ContactSheet, Destination, Observer, PartialFile, Progress, RowFormat, RowOptions, RowWriter,
         SheetSampler, StandardOutput, Tile, tracker_title,
     },
+    program::{self, BadInput},
     run::{RunReport, run},
     sequence::{self, Occluder, OpenOptions, Walker, WalkerOptions},
     tracker::{CheckedParameters, InfoPart, Parameters, Tracker},
 };
 
-use super::{demo_folder::DemoFolder, exit::BadInput, interrupt};
+use super::demo_folder::DemoFolder;
 
 pub const EXAMPLES: &str = "\
 The person walks 150 frames down a street, while the legs swing, the light and the person's size change, and a \
@@ -63,7 +64,7 @@ pub fn demo(args: &DemoArgs) -> Result<()> {
     });
     let frames = walker.ground_truth().len();
     let folder = DemoFolder::claim(&args.out, frames)?;
-    let interrupted = interrupt::watch()?;
+    let interrupted = program::watch().context("Ctrl-C cannot be watched for")?;
     eprintln!("rendering {frames} frames of a walking person into {}", folder.walker().display());
     walker.write_otb_folder(&folder.walker()).context("--out")?;
     let mut passes = Vec::new();

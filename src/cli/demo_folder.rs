@@ -6,9 +6,7 @@ use std::{
 };
 
 use anyhow::{Context, Result};
-use infopart::sequence::Walker;
-
-use super::exit::BadInput;
+use infopart::{program::BadInput, sequence::Walker};
 
 /// How the file begins that says that the folder is the demo's.
 const SIGNATURE: &str = "Made by `infopart demo`";

@@ -3,12 +3,11 @@
 use anyhow::Result;
 use infopart::{
     geometry::{Origin, Rect},
+    program::BadInput,
     run::{RunError, RunFailure},
     sequence::Sequence,
     tracker::TrackError,
 };
-
-use super::exit::BadInput;
 
 /// The target's box in the first frame.
 pub struct FirstBox {

@@ -7,9 +7,7 @@ use clap::{Parser, Subcommand};
 mod config;
 mod demo;
 mod demo_folder;
-mod exit;
 mod first_box;
-mod interrupt;
 mod outputs;
 mod parameters;
 mod track;
@@ -56,7 +54,7 @@ pub fn main() -> ExitCode {
         Command::Demo(args) => demo::demo(&args),
         Command::Config(args) => config::config(&args),
     };
-    exit::report(outcome)
+    infopart::program::report(outcome)
 }
 
 #[cfg(test)]

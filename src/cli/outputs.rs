@@ -12,10 +12,11 @@ use infopart::{
         FrameEvent, Observer, OutputError, PartialFile, PictureFolder, Progress, RowFormat, RowOptions,
         RowWriter, StandardOutput, VIDEO_EXTENSIONS, VideoWriter,
     },
+    program::BadInput,
     run::RunError,
 };
 
-use super::{exit::BadInput, track::TrackArgs};
+use super::track::TrackArgs;
 
 /// The observers of a run, and where its rows are if it stops.
 pub struct Outputs {

@@ -6,10 +6,11 @@ use anyhow::{Context, Result};
 use clap::Args;
 use infopart::{
     geometry::Region,
+    program::BadInput,
     tracker::{CheckedParameters, Parameters},
 };
 
-use super::{exit::BadInput, values::parse_count};
+use super::values::parse_count;
 
 #[derive(Debug, Args)]
 pub struct ParameterArgs {

@@ -7,6 +7,7 @@ use clap::Args;
 use infopart::{
     geometry::{Origin, Rect},
     output::{Summary, tracker_title},
+    program::{self, BadInput},
     run::{RunReport, run},
     sequence::{self, OpenOptions},
     tracker::{CheckedParameters, InfoPart, Tracker},
@@ -14,9 +15,7 @@ use infopart::{
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use super::{
-    exit::BadInput,
     first_box::FirstBox,
-    interrupt,
     outputs::Outputs,
     parameters::ParameterArgs,
     values::{Format, parse_box, parse_count, parse_origin},
@@ -100,7 +99,7 @@ pub fn track(args: &TrackArgs) -> Result<()> {
     let mut sequence = sequence::open(&args.input, &args.open_options())?;
     let first = FirstBox::find(args.init, &args.input, &sequence)?;
     let mut outputs = Outputs::open(args, sequence.origin, first.as_given, sequence.source.remaining())?;
-    let interrupted = interrupt::watch()?;
+    let interrupted = program::watch().context("Ctrl-C cannot be watched for")?;
     let threads = pool.as_ref().map_or_else(rayon::current_num_threads, |pool| pool.current_num_threads());
     let mut tracker = start_tracker(parameters.clone(), pool);
     let report = run(

@@ -5,20 +5,21 @@ use std::{
     sync::atomic::{AtomicBool, Ordering},
 };
 
-use anyhow::{Context, Result};
-
-use super::exit;
+use super::INTERRUPTED as INTERRUPTED_CODE;
 
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
 /// Watches for Ctrl-C from now on; the flag is true once it came.
-pub fn watch() -> Result<&'static AtomicBool> {
+///
+/// # Errors
+/// If the system does not let the program watch, or it watches already.
+pub fn watch() -> Result<&'static AtomicBool, ctrlc::Error> {
     let on_interrupt = || {
         if INTERRUPTED.swap(true, Ordering::Relaxed) {
             // Every row is on disk as soon as it is known, so nothing is lost.
-            process::exit(exit::INTERRUPTED.into());
+            process::exit(INTERRUPTED_CODE.into());
         }
     };
-    ctrlc::set_handler(on_interrupt).context("Ctrl-C cannot be watched for")?;
+    ctrlc::set_handler(on_interrupt)?;
     Ok(&INTERRUPTED)
 }

@@ -2,18 +2,20 @@
 
 use std::process::ExitCode;
 
-use anyhow::Error;
-use infopart::{
+use crate::{
     output::OutputError,
     run::{RunError, RunFailure},
     sequence::SequenceError,
     tracker::ParameterError,
 };
+use anyhow::Error;
 use thiserror::Error as ThisError;
 
-const INTERNAL_FAILURE: u8 = 1;
-const BAD_INPUT: u8 = 2;
-/// As shells report a program that SIGINT ended: 128 + 2.
+/// Exit code of a failure that the user cannot put right.
+pub const INTERNAL_FAILURE: u8 = 1;
+/// Exit code of bad input: a flag, a file or a box.
+pub const BAD_INPUT: u8 = 2;
+/// Exit code after Ctrl-C. As shells report a program that SIGINT ended: 128 + 2.
 pub const INTERRUPTED: u8 = 130;
 
 /// Something the user can put right; the message says how.
@@ -23,8 +25,14 @@ pub struct BadInput(pub String);
 
 /// Tells an error on standard error and gives the program's exit code.
 pub fn report(outcome: Result<(), Error>) -> ExitCode {
+    report_with(outcome, |_| None)
+}
+
+/// [`report`] for a program with errors of its own, for which `own_code` gives the exit code; an error whose code is 0
+/// is not told.
+pub fn report_with(outcome: Result<(), Error>, own_code: impl Fn(&Error) -> Option<u8>) -> ExitCode {
     let Err(error) = outcome else { return ExitCode::SUCCESS };
-    let code = code_of(&error);
+    let code = own_code(&error).unwrap_or_else(|| code_of(&error));
     if code != 0 {
         eprintln!("error: {}", message(&error));
     }

@@ -1,0 +1,7 @@
+//! What every program of this project shares: exit codes, how an error is told, and Ctrl-C.
+
+mod exit;
+mod interrupt;
+
+pub use exit::{BAD_INPUT, BadInput, INTERNAL_FAILURE, INTERRUPTED, report, report_with};
+pub use interrupt::watch;
