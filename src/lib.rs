@@ -44,3 +44,6 @@ pub mod program;
 pub mod run;
 pub mod sequence;
 pub mod tracker;
+
+/// The version of this package, as `infopart --version` tells it.
+pub const VERSION: &str = env!("CARGO_PKG_VERSION");

@@ -1,2 +1,8 @@
-//! Runs trackers over the Object Tracking Benchmark and scores them exactly as each toolkit in use would.
+//! Runs trackers over the Object Tracking Benchmark (TB-100) and scores them exactly as each toolkit in use would.
 #![deny(missing_docs)]
+
+pub mod catalogue;
+pub mod dataset;
+pub mod protocol;
+pub mod runner;
+pub mod store;

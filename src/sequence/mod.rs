@@ -37,6 +37,7 @@ mod walker;
 pub use error::{RowProblem, SequenceError};
 pub use ground_truth::{parse_boxes, parse_ground_truth, read_boxes, read_ground_truth};
 pub use open::open;
+pub use otb::{OtbTarget, otb_targets};
 pub use walker::{Occluder, Walker, WalkerOptions};
 
 /// A frame and where it stands in its source.

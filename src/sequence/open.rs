@@ -100,7 +100,7 @@ fn refuse_target(input: &str, options: &OpenOptions) -> Result<(), SequenceError
 }
 
 /// The folder's own name, also where the path ends in `.` or `..`.
-fn folder_name(path: &Path) -> String {
+pub(super) fn folder_name(path: &Path) -> String {
     let name = |path: &Path| path.file_name().map(|name| name.to_string_lossy().into_owned());
     let resolved = || std::path::absolute(path).ok().and_then(|path| path.canonicalize().ok());
     name(path).or_else(|| resolved().and_then(|path| name(&path))).unwrap_or_else(|| file_name(path))

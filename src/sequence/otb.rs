@@ -10,6 +10,7 @@ use super::{
     ground_truth::parse_ground_truth,
     images::{ImageFiles, file_name, images_in},
     natural::number_in_name,
+    open::folder_name,
     range::FrameRange,
 };
 use crate::geometry::{Origin, Rect};
@@ -32,6 +33,32 @@ pub(super) struct OtbFolder {
     path: PathBuf,
     name: String,
     annotations: Vec<Annotation>,
+}
+
+/// A target of an OTB folder.
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct OtbTarget {
+    /// The folder's name, with the target's number if the folder has several (`Jogging-1`).
+    pub name: String,
+    /// K of `groundtruth_rect.K.txt`; `None` for the plain `groundtruth_rect.txt`.
+    pub number: Option<usize>,
+    /// The ground truth file.
+    pub ground_truth: PathBuf,
+}
+
+/// The targets of a folder, a ground truth file that has rows each; none if it is no OTB folder.
+///
+/// # Errors
+/// [`SequenceError::Io`] if the folder or a ground truth in it cannot be read.
+pub fn otb_targets(folder: &Path) -> Result<Vec<OtbTarget>, SequenceError> {
+    let Some(folder) = OtbFolder::recognise(folder, &folder_name(folder))? else { return Ok(Vec::new()) };
+    let target = |annotation: &Annotation| OtbTarget {
+        name: folder.name_of(annotation),
+        number: annotation.target,
+        ground_truth: annotation.path.clone(),
+    };
+    Ok(folder.annotations.iter().map(target).collect())
 }
 
 /// A ground truth file that has rows.
@@ -208,6 +235,17 @@ mod tests {
         let third = opened(&folder, OpenOptions { target: Some(3), ..OpenOptions::default() });
         let message = third.map(|_| ()).unwrap_err().to_string();
         assert!(message.contains("has no target 3; give --target one of: 1, 2"), "{message}");
+    }
+
+    #[test]
+    fn targets_are_listed_with_their_files() {
+        let folder = folder_with(&[("groundtruth_rect.1.txt", ROWS), ("groundtruth_rect.2.txt", ROWS)]);
+        let targets = otb_targets(folder.path()).unwrap();
+        let name = folder_name(folder.path());
+        assert_eq!(targets.len(), 2);
+        assert_eq!((targets[1].name.clone(), targets[1].number), (format!("{name}-2"), Some(2)));
+        assert!(targets[1].ground_truth.ends_with("groundtruth_rect.2.txt"));
+        assert!(otb_targets(&folder.path().join("img")).unwrap().is_empty());
     }
 
     #[test]

@@ -1,0 +1,60 @@
+//! What several subcommands take: data, sequences; and how problems that end nothing are told.
+
+use std::{fmt::Display, path::PathBuf};
+
+use anyhow::{Context, Result};
+use clap::Args;
+use infopart::program::BadInput;
+use otb_eval::{catalogue, dataset::Dataset};
+
+#[derive(Debug, Args)]
+pub struct DataArgs {
+    /// Folders of OTB sequences, or single ones (img/ and groundtruth_rect.txt); where frames are not needed, also a
+    /// JSON file of boxes such as OTB100.json
+    #[arg(long, value_name = "DATA", num_args = 1.., required = true)]
+    pub data: Vec<PathBuf>,
+    /// Sequences by name, in any toolkit's spelling, and lists of them: tb100, tb50, cvpr13, person, people8, other7
+    /// [default: all of the data]
+    #[arg(long, value_name = "NAME,LIST,...")]
+    pub sequences: Option<String>,
+}
+
+impl DataArgs {
+    /// The data, and the problems of sequences that could not be read.
+    pub fn open(&self) -> Result<(Dataset, Problems)> {
+        let (dataset, unreadable) = Dataset::open(&self.data).context("--data")?;
+        let mut problems = Problems::default();
+        for problem in unreadable {
+            problems.tell(&problem);
+        }
+        Ok((dataset, problems))
+    }
+
+    /// The sequences asked for, if any are.
+    pub fn selected(&self) -> Result<Option<Vec<String>>> {
+        self.sequences.as_deref().map(|words| catalogue::select(words).context("--sequences")).transpose()
+    }
+}
+
+/// Problems of single sequences: told at once, and in the end the reason for exit code 2.
+#[derive(Debug, Default)]
+pub struct Problems {
+    count: usize,
+}
+
+impl Problems {
+    /// Tells one on standard error.
+    pub fn tell(&mut self, problem: &dyn Display) {
+        eprintln!("problem: {problem}");
+        self.count += 1;
+    }
+
+    /// An error if there was any problem.
+    pub fn into_result(self) -> Result<()> {
+        match self.count {
+            0 => Ok(()),
+            1 => Err(BadInput("1 problem, told above; everything else was done".into()).into()),
+            count => Err(BadInput(format!("{count} problems, told above; everything else was done")).into()),
+        }
+    }
+}

@@ -1,0 +1,73 @@
+//! The command line: one file a subcommand, errors told in one place.
+
+use std::process::ExitCode;
+
+use anyhow::Error;
+use clap::{Parser, Subcommand};
+use infopart::program::{self, BAD_INPUT, INTERRUPTED};
+use otb_eval::{
+    catalogue::CatalogueError, dataset::DatasetError, protocol::ProtocolError, runner::FactoryError,
+    store::StoreError,
+};
+
+mod inputs;
+mod jobs;
+mod plan;
+mod run;
+
+const EXAMPLES: &str = "\
+Examples:
+  otb_eval run --data otb people --sequences people8 --out results
+Exit codes:
+  0    success
+  1    internal failure
+  2    bad input: a flag, a file, a sequence or a result; what could be done is done
+  130  interrupted with Ctrl-C";
+
+/// Runs trackers over TB-100, scores them as every toolkit would, plots, compares and reports.
+#[derive(Debug, Parser)]
+#[command(name = "otb_eval", version, max_term_width = 120, after_help = EXAMPLES)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Run trackers over sequences; a second run continues where the first was stopped
+    #[command(after_help = run::EXAMPLES)]
+    Run(run::RunArgs),
+    /// Print the jobs of a run as JSON lines, without running them
+    #[command(after_help = plan::EXAMPLES)]
+    Plan(plan::PlanArgs),
+}
+
+/// Runs the program on its command line.
+pub fn main() -> ExitCode {
+    let outcome = match Cli::parse().command {
+        Command::Run(args) => run::run(&args),
+        Command::Plan(args) => plan::plan(&args),
+    };
+    program::report_with(outcome, code_of)
+}
+
+/// Every error of the library's is about input that the user can put right.
+fn code_of(error: &Error) -> Option<u8> {
+    if error.is::<run::Interrupted>() {
+        return Some(INTERRUPTED);
+    }
+    let is_input = error.is::<CatalogueError>()
+        || error.is::<DatasetError>()
+        || error.is::<ProtocolError>()
+        || error.is::<FactoryError>()
+        || error.is::<StoreError>();
+    is_input.then_some(BAD_INPUT)
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn the_command_line_is_consistent() {
+        <super::Cli as clap::CommandFactory>::command().debug_assert();
+    }
+}

@@ -1,0 +1,123 @@
+//! `otb_eval run`: all jobs in parallel.
+
+use std::{num::NonZeroUsize, thread, time::Duration};
+
+use anyhow::{Context, Result};
+use clap::Args;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use infopart::program;
+use otb_eval::{
+    runner::{Job, Outcome, RunOptions, RunSummary, run_jobs},
+    store::{Identity, Machine, StoreError},
+};
+
+use super::jobs::{JobArgs, Work};
+
+pub const EXAMPLES: &str = "\
+Examples:
+  otb_eval run --data otb people --sequences people8 --trackers infopart,whole-body,paper --seeds 5 --out results
+  otb_eval run --data otb --sequences person --protocol tre --out results --shard 1/2   # and 2/2 elsewhere
+  otb_eval run --data otb/Crossing --config fast=fast.toml --out results
+
+Every result is written whole, when its job ends. Run the same command again to continue where it was stopped; jobs \
+that failed are tried again. Results of other parameters or another version are refused, not mixed. The boxes do not \
+depend on --jobs, --shard or on interruptions; times do.
+
+Exit codes: 0 success, 1 internal failure, 2 bad input or failed jobs (the others are done), 130 interrupted";
+
+#[derive(Debug, Args)]
+pub struct RunArgs {
+    #[command(flatten)]
+    jobs_of: JobArgs,
+    /// How many jobs run at the same time; the cores are shared among them [default: one a core]
+    #[arg(long, value_name = "N")]
+    jobs: Option<NonZeroUsize>,
+    /// Fail a job that takes longer than S seconds [default: none does]
+    #[arg(long, value_name = "S", value_parser = parse_seconds)]
+    timeout: Option<Duration>,
+}
+
+fn parse_seconds(word: &str) -> Result<Duration, String> {
+    let seconds = word.parse::<f64>().ok().filter(|seconds| *seconds > 0.0);
+    let duration = seconds.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
+    duration.ok_or_else(|| format!("`{word}` is no time; give seconds, for example 600"))
+}
+
+pub fn run(args: &RunArgs) -> Result<()> {
+    let mut work = args.jobs_of.work()?;
+    let options = args.options();
+    claim(&work, options)?;
+    let total = work.jobs.len();
+    let left: Vec<Job> = work.jobs.iter().filter(|job| !work.store.is_done(job)).cloned().collect();
+    let interrupted = program::watch().context("Ctrl-C cannot be watched for")?;
+    let progress = Progress::new(&left);
+    let summary = run_jobs(&left, &work.factories, options, interrupted, |job, outcome| -> Result<()> {
+        match outcome {
+            Outcome::Done(recording) => work.store.keep(job, &recording)?,
+            Outcome::Failed(reason) => {
+                work.store.keep_failure(job, &reason)?;
+                progress.bar.suspend(|| work.problems.tell(&format!("{}: {reason}", job.id())));
+            }
+        }
+        progress.count(job);
+        Ok(())
+    })?;
+    progress.bar.finish_and_clear();
+    tell(&work, summary, total, left.len());
+    if summary.interrupted && summary.done + summary.failed < left.len() {
+        return Err(Interrupted.into());
+    }
+    work.problems.into_result()
+}
+
+/// The run was stopped by Ctrl-C; what is done is kept.
+#[derive(Debug, thiserror::Error)]
+#[error("interrupted; run the same command again to go on")]
+pub struct Interrupted;
+
+impl RunArgs {
+    fn options(&self) -> RunOptions {
+        let cores = thread::available_parallelism().map_or(1, usize::from);
+        let jobs = self.jobs.map_or(cores, usize::from);
+        RunOptions { jobs, threads_per_job: (cores / jobs).max(1), timeout: self.timeout }
+    }
+}
+
+/// Makes sure that every tracker's folder is of the same parameters, before anything is run.
+fn claim(work: &Work, options: RunOptions) -> Result<(), StoreError> {
+    let machine = Machine::here(options.jobs, options.threads_per_job);
+    for factory in &work.factories {
+        let (program, parameters) = (factory.program(), factory.parameters());
+        let identity = Identity::new(factory.name(), program, parameters, work.protocol, work.shift_rules);
+        work.store.claim(&identity, &machine)?;
+    }
+    Ok(())
+}
+
+/// A bar over the frames of all jobs, hidden off a terminal.
+struct Progress {
+    bar: ProgressBar,
+}
+
+impl Progress {
+    fn new(left: &[Job]) -> Self {
+        let frames = left.iter().map(|job| job.frames as u64).sum();
+        let bar = ProgressBar::with_draw_target(Some(frames), ProgressDrawTarget::stderr_with_hz(4));
+        let style = "{bar:24.green/black.bright} {percent:>3} %  {eta} left  {msg}";
+        bar.set_style(ProgressStyle::with_template(style).unwrap_or_else(|_| ProgressStyle::default_bar()));
+        bar.set_message(format!("{} jobs", left.len()));
+        Self { bar }
+    }
+
+    fn count(&self, job: &Job) {
+        self.bar.inc(job.frames as u64);
+        self.bar.set_message(job.id());
+    }
+}
+
+fn tell(work: &Work, summary: RunSummary, total: usize, left: usize) {
+    let RunSummary { done, failed, .. } = summary;
+    let there = total - left;
+    let out = work.store.root().display();
+    eprintln!("{total} jobs: {there} were there, {done} done, {failed} failed; results in {out}");
+}

@@ -1,0 +1,133 @@
+//! The truth that results are compared with: OTB folders on disk, or the boxes of a JSON file.
+//!
+//! Boxes stay as they stand in the files, the first pixel being 1 and odd rows among them: no toolkit converts
+//! them, and each has rules of its own for rows that are no boxes.
+
+mod folder;
+mod json;
+
+use std::{
+    collections::HashSet,
+    path::{Path, PathBuf},
+};
+
+use infopart::{geometry::Rect, sequence::SequenceError};
+use thiserror::Error;
+
+/// A target whose true boxes are known.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Target {
+    /// The benchmark's name for it (`Jogging-1`), or the folder's own.
+    pub name: String,
+    /// The true boxes, a row a frame, as they stand in the file.
+    pub truth: Vec<Rect>,
+    /// Where its frames are; `None` if only its boxes are known.
+    pub frames: Option<FrameFolder>,
+}
+
+/// Where the frames of a target are.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FrameFolder {
+    /// The OTB folder.
+    pub path: PathBuf,
+    /// Which target of the folder, if its files are numbered.
+    pub target: Option<usize>,
+    /// The first frame of the truth, counted from 1 among the frames that [`infopart::sequence::open`] delivers.
+    pub first_frame: usize,
+}
+
+/// Targets in the order of their discovery.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Dataset {
+    /// The targets, no two of one name.
+    pub targets: Vec<Target>,
+}
+
+/// Truth that cannot be used.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum DatasetError {
+    /// Nothing at a path.
+    #[error("{path}: no such file or folder; give a folder of OTB sequences, one sequence, or OTB100.json with --data", path = path.display())]
+    Missing {
+        /// The path as given.
+        path: PathBuf,
+    },
+    /// A folder without sequences.
+    #[error("{path}: no OTB sequence there; each is a folder with img/ and groundtruth_rect.txt", path = path.display())]
+    NoSequences {
+        /// The path as given.
+        path: PathBuf,
+    },
+    /// A file or folder that cannot be read.
+    #[error("{path}: cannot be read: {source}; check its permissions", path = path.display())]
+    Io {
+        /// The file or folder.
+        path: PathBuf,
+        /// The system's reason.
+        source: std::io::Error,
+    },
+    /// A sequence that cannot be read; the others are.
+    #[error("{name}: {source}")]
+    Sequence {
+        /// The folder's name.
+        name: String,
+        /// What is wrong, and what to do.
+        source: SequenceError,
+    },
+    /// A JSON file that is not a list of sequences.
+    #[error("{path}: {problem}; give a JSON object of NAME: {{\"gt_rect\": [[x,y,w,h], ...]}}, as OTB100.json is", path = path.display())]
+    Json {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        problem: String,
+    },
+    /// Two targets of one name.
+    #[error("{name}: found twice, the second time in {path}; give only one of them with --data", path = path.display())]
+    Twice {
+        /// The target.
+        name: String,
+        /// Where it was found again.
+        path: PathBuf,
+    },
+}
+
+impl Dataset {
+    /// Reads folders of OTB sequences, single OTB folders and JSON files of boxes. Sequences that cannot be read are
+    /// left out and told beside the others.
+    ///
+    /// # Errors
+    /// [`DatasetError`] if a path itself is of no use.
+    pub fn open(paths: &[PathBuf]) -> Result<(Self, Vec<DatasetError>), DatasetError> {
+        let (mut dataset, mut problems, mut names) = (Self::default(), Vec::new(), HashSet::new());
+        for path in paths {
+            for target in read(path, &mut problems)? {
+                if names.insert(target.name.clone()) {
+                    dataset.targets.push(target);
+                } else {
+                    problems.push(DatasetError::Twice { name: target.name, path: path.clone() });
+                }
+            }
+        }
+        Ok((dataset, problems))
+    }
+
+    /// The target of that name.
+    pub fn target(&self, name: &str) -> Option<&Target> {
+        self.targets.iter().find(|target| target.name == name)
+    }
+}
+
+fn read(path: &Path, problems: &mut Vec<DatasetError>) -> Result<Vec<Target>, DatasetError> {
+    if path.is_dir() {
+        folder::read(path, problems)
+    } else if path.is_file() {
+        json::read(path)
+    } else {
+        Err(DatasetError::Missing { path: path.to_owned() })
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,145 @@
+//! Who makes trackers. The runner knows a tracker only by its factory, so that one in another process can stand
+//! behind the same trait.
+
+use infopart::{
+    geometry::Region,
+    tracker::{CheckedParameters, InfoPart, ParameterError, Parameters, Tracker},
+};
+use serde_json::Value;
+use thiserror::Error;
+
+/// Makes trackers of one kind.
+pub trait TrackerFactory: Send + Sync {
+    /// The name in tables and result folders.
+    fn name(&self) -> &str;
+
+    /// Everything that decides the tracker's boxes but for the seed, as JSON with a fixed order of keys.
+    fn parameters(&self) -> Value;
+
+    /// The program that tracks, with its version.
+    fn program(&self) -> String;
+
+    /// A new tracker whose randomness comes from `seed` alone. It works in the rayon pool that it is called from.
+    ///
+    /// # Errors
+    /// [`FactoryError`] if the tracker cannot be made.
+    fn create(&self, seed: u64) -> Result<Box<dyn Tracker>, FactoryError>;
+}
+
+/// A tracker that cannot be made.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum FactoryError {
+    /// No tracker of that name.
+    #[error("there is no tracker `{name}`; choose from: {}; or give one of your own with --config {name}=FILE.toml", InfoPartFactory::NAMES.join(", "))]
+    Unknown {
+        /// The name as given.
+        name: String,
+    },
+    /// Parameters out of their range.
+    #[error("tracker {name}: {source}")]
+    Parameters {
+        /// The tracker.
+        name: String,
+        /// Which parameter, and what it may be.
+        source: ParameterError,
+    },
+}
+
+/// InfoPart with some parameters, under a name.
+#[derive(Debug, Clone)]
+pub struct InfoPartFactory {
+    name: String,
+    parameters: CheckedParameters,
+}
+
+impl InfoPartFactory {
+    /// Names that [`named_factory`] knows: the default, the same on the whole body, the method as printed.
+    pub const NAMES: [&str; 3] = ["infopart", "whole-body", "paper"];
+
+    /// InfoPart with these parameters, of which the seed does not matter.
+    ///
+    /// # Errors
+    /// [`FactoryError::Parameters`].
+    pub fn new(name: impl Into<String>, mut parameters: Parameters) -> Result<Self, FactoryError> {
+        let name = name.into();
+        parameters.seed = 1;
+        match parameters.check() {
+            Ok(parameters) => Ok(Self { name, parameters }),
+            Err(source) => Err(FactoryError::Parameters { name, source }),
+        }
+    }
+}
+
+/// The factory of that name.
+///
+/// # Errors
+/// [`FactoryError::Unknown`].
+pub fn named_factory(name: &str) -> Result<InfoPartFactory, FactoryError> {
+    let preset = |preset| {
+        Parameters::preset(preset)
+            .map_err(|source| FactoryError::Parameters { name: name.to_owned(), source })
+    };
+    let parameters = match name {
+        "infopart" => Parameters::default(),
+        "whole-body" => {
+            let mut parameters = Parameters::default();
+            parameters.region = Region::Whole;
+            parameters
+        }
+        "paper" => preset("paper")?,
+        _ => return Err(FactoryError::Unknown { name: name.to_owned() }),
+    };
+    InfoPartFactory::new(name, parameters)
+}
+
+impl TrackerFactory for InfoPartFactory {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn parameters(&self) -> Value {
+        let mut parameters = serde_json::to_value(&*self.parameters).unwrap_or_default();
+        if let Some(object) = parameters.as_object_mut() {
+            object.remove("seed");
+        }
+        parameters
+    }
+
+    fn program(&self) -> String {
+        format!("infopart {}", infopart::VERSION)
+    }
+
+    fn create(&self, seed: u64) -> Result<Box<dyn Tracker>, FactoryError> {
+        let mut parameters = (*self.parameters).clone();
+        parameters.seed = seed;
+        let parameters = parameters
+            .check()
+            .map_err(|source| FactoryError::Parameters { name: self.name.clone(), source })?;
+        Ok(Box::new(InfoPart::new(parameters)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_name_is_known_and_others_are_refused_with_a_list() {
+        for name in InfoPartFactory::NAMES {
+            assert_eq!(named_factory(name).unwrap().name(), name);
+        }
+        let message = named_factory("kcf").map(|_| ()).unwrap_err().to_string();
+        assert!(message.contains("`kcf`") && message.contains("infopart, whole-body, paper"), "{message}");
+    }
+
+    #[test]
+    fn parameters_are_told_without_the_seed() {
+        let mut parameters = Parameters::default();
+        parameters.seed = 7;
+        let seven = InfoPartFactory::new("a", parameters).unwrap().parameters();
+        assert_eq!(seven, named_factory("infopart").unwrap().parameters());
+        assert!(seven.get("seed").is_none() && seven["particles"].is_number());
+        assert_ne!(seven, named_factory("whole-body").unwrap().parameters());
+    }
+}

@@ -1,0 +1,16 @@
+//! Runs trackers over sequences: which jobs there are, who makes the trackers, and the jobs in parallel.
+//!
+//! A job is one tracker with one seed on one segment of one sequence. Jobs have stable ids, which are also where
+//! their results go, so that a run can be split over machines, killed and continued.
+
+mod execute;
+mod factory;
+mod job;
+mod plan;
+mod pool;
+
+pub use execute::{Recording, execute};
+pub use factory::{FactoryError, InfoPartFactory, TrackerFactory, named_factory};
+pub use job::Job;
+pub use plan::{PlanOptions, PlanProblem, Shard, plan};
+pub use pool::{Outcome, RunOptions, RunSummary, run_jobs};

@@ -1,0 +1,125 @@
+//! The folder of results: `RESULTS/PROTOCOL/TRACKER/seed_S/SEQ[_SEGMENT].txt`, times beside, and `run.json`.
+
+mod identity;
+mod whole;
+
+use std::{
+    fmt::Write as _,
+    fs, io,
+    path::{Path, PathBuf},
+};
+
+use thiserror::Error;
+
+use crate::runner::{Job, Recording};
+
+pub use identity::{Identity, Machine};
+pub use whole::{remove_stale, write_whole};
+
+/// Results that cannot be kept or read.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum StoreError {
+    /// The file system refused.
+    #[error("{path}: {source}; choose another folder with --out, or make room", path = path.display())]
+    Io {
+        /// The file or folder.
+        path: PathBuf,
+        /// The system's reason.
+        source: io::Error,
+    },
+    /// Results of something else are there.
+    #[error("{path}: the results there are of {what}; give another folder with --out, or remove that one", path = path.display())]
+    OtherRun {
+        /// The tracker's folder.
+        path: PathBuf,
+        /// In what they differ.
+        what: String,
+    },
+    /// `run.json` is not what this program writes.
+    #[error("{path}: {problem}; give another folder with --out, or remove that one", path = path.display())]
+    BadRunFile {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        problem: String,
+    },
+}
+
+/// The folder of results.
+#[derive(Debug, Clone)]
+pub struct Store {
+    root: PathBuf,
+}
+
+impl Store {
+    /// The store in a folder, which need not exist yet.
+    pub fn new(root: &Path) -> Self {
+        Self { root: root.to_owned() }
+    }
+
+    /// Where it is.
+    pub fn root(&self) -> &Path {
+        &self.root
+    }
+
+    /// Makes a tracker's folder its own: writes `run.json` where there is none, and checks it where there is one. What a
+    /// killed run left half-written is removed.
+    ///
+    /// # Errors
+    /// [`StoreError::OtherRun`] if results of other parameters, another version or other rules are there.
+    pub fn claim(&self, identity: &Identity, machine: &Machine) -> Result<(), StoreError> {
+        let folder = self.root.join(identity.protocol.name()).join(&identity.tracker);
+        fs::create_dir_all(&folder).map_err(|source| StoreError::Io { path: folder.clone(), source })?;
+        remove_stale(&folder).map_err(|source| StoreError::Io { path: folder.clone(), source })?;
+        identity.claim(&folder, machine)
+    }
+
+    /// Whether the job's result is there.
+    pub fn is_done(&self, job: &Job) -> bool {
+        self.root.join(job.result_path()).is_file()
+    }
+
+    /// Keeps a job's boxes and times, the boxes last, since they say that the job is done.
+    ///
+    /// # Errors
+    /// [`StoreError::Io`].
+    pub fn keep(&self, job: &Job, recording: &Recording) -> Result<(), StoreError> {
+        let (mut rows, mut seconds) = (String::new(), String::new());
+        for row in &recording.rows {
+            // Writing to a String cannot fail.
+            let _ = writeln!(rows, "{},{},{},{}", row.x, row.y, row.w, row.h);
+        }
+        for second in &recording.seconds {
+            let _ = writeln!(seconds, "{second:.8}");
+        }
+        self.write(&job.time_path(), &seconds)?;
+        self.write(&job.result_path(), &rows)?;
+        self.forget_failure(job)
+    }
+
+    /// Records that a job failed. The next run tries it again.
+    ///
+    /// # Errors
+    /// [`StoreError::Io`].
+    pub fn keep_failure(&self, job: &Job, reason: &str) -> Result<(), StoreError> {
+        let text = format!("{}\n", serde_json::json!({ "job": job.id(), "reason": reason }));
+        self.write(&job.failure_path(), &text)
+    }
+
+    fn forget_failure(&self, job: &Job) -> Result<(), StoreError> {
+        let path = self.root.join(job.failure_path());
+        match fs::remove_file(&path) {
+            Err(source) if source.kind() != io::ErrorKind::NotFound => Err(StoreError::Io { path, source }),
+            _ => Ok(()),
+        }
+    }
+
+    fn write(&self, relative: &Path, text: &str) -> Result<(), StoreError> {
+        let path = self.root.join(relative);
+        write_whole(&path, text.as_bytes()).map_err(|source| StoreError::Io { path, source })
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,76 @@
+use std::fs;
+
+use infopart::geometry::Rect;
+
+use super::*;
+use crate::{
+    dataset::FrameFolder,
+    protocol::{Protocol, Segment, ShiftRules},
+};
+
+fn identity(particles: u64, program: &str) -> Identity {
+    let parameters = serde_json::json!({ "particles": particles, "stumps": 40 });
+    Identity::new("infopart", program.into(), parameters, Protocol::Ope, ShiftRules::Matlab)
+}
+
+fn job() -> Job {
+    let first_box = Rect::new(1.0, 2.5, 3.0, 4.0);
+    Job {
+        protocol: Protocol::Ope,
+        tracker: "infopart".into(),
+        seed: 2,
+        sequence: "Crossing".into(),
+        segment: Segment { label: None, start: 0, first_box },
+        frames: 2,
+        folder: FrameFolder { path: "otb/Crossing".into(), target: None, first_frame: 1 },
+    }
+}
+
+#[test]
+fn results_stand_where_the_layout_says_with_every_digit() {
+    let folder = tempfile::tempdir().unwrap();
+    let store = Store::new(folder.path());
+    let recording = Recording {
+        rows: vec![Rect::new(1.0, 2.5, 3.0, 4.0), Rect::new(1.0 / 3.0, -7.0, 10.25, 16.0)],
+        seconds: vec![0.25, 0.001_234_567_89],
+    };
+    store.keep_failure(&job(), "no luck").unwrap();
+    let failure = folder.path().join("ope/infopart/seed_2/Crossing.failed.json");
+    assert!(fs::read_to_string(&failure).unwrap().contains("no luck"));
+    assert!(!store.is_done(&job()));
+    store.keep(&job(), &recording).unwrap();
+    let read = |name: &str| fs::read_to_string(folder.path().join("ope/infopart/seed_2").join(name)).unwrap();
+    assert_eq!(read("Crossing.txt"), "1,2.5,3,4\n0.3333333333333333,-7,10.25,16\n");
+    assert_eq!(read("Crossing_time.txt"), "0.25000000\n0.00123457\n");
+    assert!(store.is_done(&job()) && !failure.exists());
+}
+
+#[test]
+fn a_folder_belongs_to_one_set_of_parameters_and_one_version() {
+    let folder = tempfile::tempdir().unwrap();
+    let store = Store::new(folder.path());
+    let (here, there) = (Machine::here(2, 1), Machine::here(1, 2));
+    store.claim(&identity(800, "infopart 1"), &here).unwrap();
+    let path = folder.path().join("ope/infopart/run.json");
+    let first = fs::read_to_string(&path).unwrap();
+    store.claim(&identity(800, "infopart 1"), &there).unwrap();
+    assert_eq!(fs::read_to_string(&path).unwrap(), first);
+    let refused = |identity| store.claim(&identity, &here).unwrap_err().to_string();
+    let message = refused(identity(400, "infopart 1"));
+    assert!(
+        message.contains("`particles` is 800 there and 400 here") && message.contains("--out"),
+        "{message}"
+    );
+    let message = refused(identity(800, "infopart 2"));
+    assert!(message.contains("infopart 1, and this is infopart 2"), "{message}");
+    fs::write(&path, "{").unwrap();
+    assert!(refused(identity(800, "infopart 1")).contains("run.json"));
+}
+
+#[test]
+fn the_hash_is_of_the_parameters_alone() {
+    let hash = |particles, program| identity(particles, program).parameters_hash;
+    assert_eq!(hash(1, "a"), hash(1, "b"));
+    assert_ne!(hash(1, "a"), hash(2, "a"));
+    assert_eq!(hash(1, "a").len(), 64);
+}

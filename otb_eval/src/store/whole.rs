@@ -1,0 +1,123 @@
+//! Files that are there whole or not at all, whatever happens to their writer.
+//!
+//! A file grows under a temporary name that its writer holds locked, and is then renamed. A temporary file that nobody
+//! holds was left by a writer that was killed, and may be removed.
+
+use std::{
+    ffi::OsString,
+    fs::{self, File, TryLockError},
+    io::{self, Write},
+    path::{Path, PathBuf},
+    process,
+};
+
+const SUFFIX: &str = ".partial";
+
+/// Writes a file, and the folders it needs, in one step: a reader sees what was there before or all of `bytes`.
+///
+/// # Errors
+/// What the file system says.
+pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    if let Some(folder) = path.parent() {
+        fs::create_dir_all(folder)?;
+    }
+    let (mut file, temporary) = temporary_beside(path)?;
+    let written = file.write_all(bytes).and_then(|()| fs::rename(&temporary, path));
+    if written.is_err() {
+        // The first failure is the one to tell.
+        let _ = fs::remove_file(&temporary);
+    }
+    written
+}
+
+/// Writes a file only if there is none; `false` if there is one already.
+///
+/// # Errors
+/// What the file system says.
+pub(super) fn write_new(path: &Path, bytes: &[u8]) -> io::Result<bool> {
+    let (mut file, temporary) = temporary_beside(path)?;
+    let linked = file.write_all(bytes).and_then(|()| fs::hard_link(&temporary, path));
+    let removed = fs::remove_file(&temporary);
+    match linked {
+        Err(error) if error.kind() == io::ErrorKind::AlreadyExists => Ok(false),
+        Err(error) => Err(error),
+        Ok(()) => removed.map(|()| true),
+    }
+}
+
+fn temporary_beside(path: &Path) -> io::Result<(File, PathBuf)> {
+    let mut name = OsString::from(".");
+    name.push(path.file_name().unwrap_or(path.as_os_str()));
+    name.push(format!(".{}{SUFFIX}", process::id()));
+    let temporary = path.with_file_name(name);
+    let file = File::create(&temporary)?;
+    file.lock()?;
+    Ok((file, temporary))
+}
+
+/// Removes what killed writers left in a folder and the folders in it.
+///
+/// # Errors
+/// What the file system says.
+pub fn remove_stale(folder: &Path) -> io::Result<()> {
+    for entry in fs::read_dir(folder)? {
+        let entry = entry?;
+        if entry.file_type()?.is_dir() {
+            remove_stale(&entry.path())?;
+        } else if entry.file_name().to_string_lossy().ends_with(SUFFIX) {
+            remove_if_left(&entry.path())?;
+        }
+    }
+    Ok(())
+}
+
+fn remove_if_left(path: &Path) -> io::Result<()> {
+    let file = match File::open(path) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
+        other => other?,
+    };
+    match file.try_lock() {
+        Ok(()) => match fs::remove_file(path) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
+            other => other,
+        },
+        Err(TryLockError::WouldBlock) => Ok(()),
+        Err(TryLockError::Error(error)) => Err(error),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_is_replaced_whole_and_leaves_nothing_beside_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("deep/er/a.txt");
+        write_whole(&path, b"one").unwrap();
+        write_whole(&path, b"two").unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"two");
+        assert_eq!(fs::read_dir(path.parent().unwrap()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn a_new_file_is_written_once() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.txt");
+        assert!(write_new(&path, b"one").unwrap());
+        assert!(!write_new(&path, b"two").unwrap());
+        assert_eq!(fs::read(&path).unwrap(), b"one");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn only_what_nobody_writes_any_more_is_stale() {
+        let folder = tempfile::tempdir().unwrap();
+        let (_held, living) = temporary_beside(&folder.path().join("sub.txt")).unwrap();
+        let dead = folder.path().join(".a.txt.999999.partial");
+        fs::write(&dead, "half").unwrap();
+        fs::write(folder.path().join("b.txt"), "whole").unwrap();
+        remove_stale(folder.path()).unwrap();
+        assert!(living.exists() && !dead.exists() && folder.path().join("b.txt").exists());
+    }
+}
