@@ -2,7 +2,9 @@
 #![deny(missing_docs)]
 
 pub mod catalogue;
+pub mod compare;
 pub mod dataset;
 pub mod protocol;
+pub mod results;
 pub mod runner;
 pub mod store;

@@ -1,0 +1,82 @@
+//! One result file, and the times beside it.
+
+use std::{
+    fs, io,
+    path::{Path, PathBuf},
+};
+
+use infopart::{geometry::Rect, sequence::parse_boxes};
+
+use super::ResultsError;
+
+/// A tracker's boxes on a sequence.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ResultFile {
+    /// A row a frame, as they stand in the file, odd ones among them.
+    pub rows: Vec<Rect>,
+    /// What stands between the numbers of a row.
+    pub separators: Separators,
+}
+
+/// What stands between the numbers of a file. Toolkits' readers take only some.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Separators {
+    /// A comma somewhere.
+    pub comma: bool,
+    /// A tab somewhere.
+    pub tab: bool,
+    /// A space between numbers somewhere without a comma.
+    pub space: bool,
+}
+
+impl ResultFile {
+    /// Reads a file of `x,y,w,h` rows, separated by commas, tabs or spaces.
+    ///
+    /// # Errors
+    /// [`ResultsError`], naming the file and line.
+    pub fn read(path: &Path) -> Result<Self, ResultsError> {
+        let bytes = fs::read(path).map_err(|source| ResultsError::Io { path: path.to_owned(), source })?;
+        let text = String::from_utf8_lossy(&bytes);
+        let rows = parse_boxes(&text, path)?;
+        if rows.is_empty() {
+            return Err(ResultsError::Empty { path: path.to_owned() });
+        }
+        Ok(Self { rows, separators: Separators::of(&text) })
+    }
+}
+
+impl Separators {
+    /// The separators in a text of rows.
+    pub fn of(text: &str) -> Self {
+        let comma = text.contains(',');
+        let is_spaced = |line: &str| line.trim().contains(' ') && !line.contains([',', '\t']);
+        Self { comma, tab: text.contains('\t'), space: text.contains(' ') && text.lines().any(is_spaced) }
+    }
+}
+
+/// The seconds beside a result: `SEQ_time.txt` there, or in a folder `times`, as got10k keeps them.
+pub(super) fn read_seconds(result: &Path) -> Result<Option<Vec<f64>>, ResultsError> {
+    let stem = result.file_stem().unwrap_or_default().to_string_lossy();
+    let name = format!("{stem}_time.txt");
+    let beside = result.with_file_name(&name);
+    let in_folder = result.with_file_name("times").join(&name);
+    for path in [beside, in_folder] {
+        match fs::read_to_string(&path) {
+            Ok(text) => return parse_seconds(&text, &path).map(Some),
+            Err(error) if matches!(error.kind(), io::ErrorKind::NotFound | io::ErrorKind::NotADirectory) => {}
+            Err(source) => return Err(ResultsError::Io { path, source }),
+        }
+    }
+    Ok(None)
+}
+
+fn parse_seconds(text: &str, path: &Path) -> Result<Vec<f64>, ResultsError> {
+    let number =
+        |(index, line): (usize, &str)| {
+            let seconds = line.trim().trim_end_matches(',').parse::<f64>().ok();
+            seconds.filter(|seconds| seconds.is_finite() && *seconds >= 0.0).ok_or_else(|| {
+                ResultsError::Time { path: PathBuf::from(path), line: index + 1, text: line.to_owned() }
+            })
+        };
+    text.trim_end().lines().enumerate().map(number).collect()
+}

@@ -1,0 +1,116 @@
+//! Which result files there are.
+
+use std::{
+    collections::BTreeMap,
+    fs, io,
+    path::{Path, PathBuf},
+};
+
+use serde::Deserialize;
+
+use super::{Results, ResultsError, SeedResults, TrackerResults};
+use crate::{catalogue, protocol::Protocol, store::Identity};
+
+/// Files beside results that are none.
+const NOT_RESULTS: [&str; 2] = ["_time", "_object_presence_scores"];
+
+pub(super) fn protocols_in(path: &Path) -> Result<Vec<Protocol>, ResultsError> {
+    if !path.is_dir() {
+        return Err(ResultsError::Missing { path: path.to_owned() });
+    }
+    let own: Vec<Protocol> =
+        Protocol::ALL.into_iter().filter(|protocol| path.join(protocol.name()).is_dir()).collect();
+    Ok(if own.is_empty() { vec![Protocol::Ope] } else { own })
+}
+
+pub(super) fn results_in(path: &Path, protocol: Protocol) -> Result<Results, ResultsError> {
+    let there = protocols_in(path)?;
+    if !there.contains(&protocol) {
+        let there = there.iter().map(|protocol| protocol.name()).collect::<Vec<_>>().join(", ");
+        return Err(ResultsError::NoProtocol { path: path.to_owned(), protocol, there });
+    }
+    let own = path.join(protocol.name());
+    let root = if own.is_dir() { own } else { path.to_owned() };
+    let mut trackers = Vec::new();
+    for (name, folder) in folders_in(&root)? {
+        trackers.extend(tracker_in(name, &folder)?);
+    }
+    if trackers.is_empty() {
+        // The folder of a single tracker.
+        let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
+        trackers.extend(tracker_in(name, &root)?);
+    }
+    if trackers.is_empty() {
+        return Err(ResultsError::Nothing { path: path.to_owned() });
+    }
+    Ok(Results { trackers })
+}
+
+/// A tracker's folder: seeds in it, or results themselves; `None` if neither is there.
+fn tracker_in(name: String, folder: &Path) -> Result<Option<TrackerResults>, ResultsError> {
+    let mut seeds = Vec::new();
+    for (subfolder, path) in folders_in(folder)? {
+        if let Some(seed) = subfolder.strip_prefix("seed_").and_then(|number| number.parse().ok()) {
+            seeds.push(seed_in(seed, &path)?);
+        }
+    }
+    if seeds.is_empty() {
+        seeds.push(seed_in(0, folder)?);
+    }
+    seeds.retain(|seed| !seed.files.is_empty() || !seed.failures.is_empty());
+    seeds.sort_by_key(|seed| seed.seed);
+    if seeds.is_empty() {
+        return Ok(None);
+    }
+    Ok(Some(TrackerResults { name, run: Identity::read(folder)?, seeds }))
+}
+
+fn seed_in(seed: u64, folder: &Path) -> Result<SeedResults, ResultsError> {
+    let (mut files, mut failures) = (BTreeMap::new(), BTreeMap::new());
+    for path in entries(folder)? {
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        if let Some(stem) = name.strip_suffix(".failed.json") {
+            failures.insert(stem.to_owned(), reason_in(&path)?);
+        } else if let Some(stem) = name.strip_suffix(".txt")
+            && !NOT_RESULTS.iter().any(|other| stem.ends_with(other))
+            && !stem.starts_with('.')
+        {
+            files.insert(in_the_benchmarks_spelling(stem), path);
+        }
+    }
+    Ok(SeedResults { seed, files, failures })
+}
+
+/// `Jogging_1` is the sequence Jogging-1 to some toolkits; `Couple_left` is Couple's segment.
+fn in_the_benchmarks_spelling(stem: &str) -> String {
+    catalogue::find(stem).map_or_else(|| stem.to_owned(), |known| known.name.to_owned())
+}
+
+#[derive(Deserialize)]
+struct Failure {
+    reason: String,
+}
+
+fn reason_in(path: &Path) -> Result<String, ResultsError> {
+    let text =
+        fs::read_to_string(path).map_err(|source| ResultsError::Io { path: path.to_owned(), source })?;
+    let failure = serde_json::from_str::<Failure>(&text);
+    Ok(failure.map_or_else(|_| text.trim().to_owned(), |failure| failure.reason))
+}
+
+fn folders_in(folder: &Path) -> Result<Vec<(String, PathBuf)>, ResultsError> {
+    let folders = entries(folder)?.into_iter().filter(|path| path.is_dir());
+    Ok(folders
+        .map(|path| (path.file_name().unwrap_or_default().to_string_lossy().into_owned(), path))
+        .collect())
+}
+
+/// Sorted, so that nothing depends on the file system's order.
+fn entries(folder: &Path) -> Result<Vec<PathBuf>, ResultsError> {
+    let io_error = |source| ResultsError::Io { path: folder.to_owned(), source };
+    let entries = fs::read_dir(folder).map_err(io_error)?;
+    let mut paths: Vec<PathBuf> =
+        entries.map(|entry| entry.map(|entry| entry.path())).collect::<io::Result<_>>().map_err(io_error)?;
+    paths.sort();
+    Ok(paths)
+}

@@ -1,0 +1,188 @@
+//! Reads what trackers reported: the layout that `run` writes, and the flat `RESULTS/TRACKER/SEQ.txt` that others use.
+
+mod file;
+mod index;
+
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+};
+
+use infopart::sequence::SequenceError;
+use thiserror::Error;
+
+use crate::{
+    protocol::Protocol,
+    runner::stem,
+    store::{Identity, Machine, StoreError},
+};
+
+pub use file::{ResultFile, Separators};
+
+/// Results that cannot be used.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum ResultsError {
+    /// Nothing at a path.
+    #[error("{path}: no such folder; give the folder of results, RESULTS/TRACKER/SEQ.txt or what `otb_eval run` wrote", path = path.display())]
+    Missing {
+        /// The path as given.
+        path: PathBuf,
+    },
+    /// A folder without results.
+    #[error("{path}: no results there; they are RESULTS/TRACKER/SEQ.txt or what `otb_eval run` wrote", path = path.display())]
+    Nothing {
+        /// The path as given.
+        path: PathBuf,
+    },
+    /// No results of a protocol.
+    #[error("{path}: no results of {protocol} there, but of: {there}; choose one with --protocol", path = path.display())]
+    NoProtocol {
+        /// The path as given.
+        path: PathBuf,
+        /// The protocol asked for.
+        protocol: Protocol,
+        /// The protocols that are there.
+        there: String,
+    },
+    /// No such tracker.
+    #[error("there are no results of the tracker `{name}`, but of: {there}; check the spelling")]
+    NoTracker {
+        /// The tracker asked for.
+        name: String,
+        /// The trackers that are there.
+        there: String,
+    },
+    /// The file system refused.
+    #[error("{path}: cannot be read: {source}; check its permissions", path = path.display())]
+    Io {
+        /// The file or folder.
+        path: PathBuf,
+        /// The system's reason.
+        source: std::io::Error,
+    },
+    /// A row that is no box.
+    #[error(transparent)]
+    Rows(#[from] SequenceError),
+    /// A file without rows.
+    #[error("{path}: the file is empty; run the tracker on the sequence again, or remove the file", path = path.display())]
+    Empty {
+        /// The file.
+        path: PathBuf,
+    },
+    /// A line of times that is no number.
+    #[error("{path}, line {line}: `{text}` is no time; write the seconds of a frame a line", path = path.display())]
+    Time {
+        /// The file.
+        path: PathBuf,
+        /// The line, counted from 1.
+        line: usize,
+        /// The line as it stands.
+        text: String,
+    },
+    /// `run.json` cannot be read.
+    #[error(transparent)]
+    Run(#[from] StoreError),
+}
+
+/// All results in a folder.
+#[derive(Debug, Clone, Default)]
+pub struct Results {
+    /// Trackers in the order of their names.
+    pub trackers: Vec<TrackerResults>,
+}
+
+/// One tracker's results under one protocol.
+#[derive(Debug, Clone)]
+pub struct TrackerResults {
+    /// The tracker's name.
+    pub name: String,
+    /// What made them, if `run` did.
+    pub run: Option<(Identity, Machine)>,
+    /// Its seeds in ascending order; one of number 0 in the flat layout.
+    pub seeds: Vec<SeedResults>,
+}
+
+/// The results of one seed.
+#[derive(Debug, Clone)]
+pub struct SeedResults {
+    /// The seed; 0 in the flat layout, which knows none.
+    pub seed: u64,
+    /// Result files by the stem `SEQ[_SEGMENT]`, the sequence in the benchmark's spelling.
+    files: BTreeMap<String, PathBuf>,
+    /// Failed jobs by stem, with the reason.
+    failures: BTreeMap<String, String>,
+}
+
+impl Results {
+    /// Finds the results of a protocol. The flat layout holds one-pass results.
+    ///
+    /// # Errors
+    /// [`ResultsError`] if there are none.
+    pub fn open(path: &Path, protocol: Protocol) -> Result<Self, ResultsError> {
+        index::results_in(path, protocol)
+    }
+
+    /// The protocols of which there are results, [`Protocol::Ope`] alone in the flat layout.
+    ///
+    /// # Errors
+    /// [`ResultsError::Missing`].
+    pub fn protocols(path: &Path) -> Result<Vec<Protocol>, ResultsError> {
+        index::protocols_in(path)
+    }
+
+    /// Keeps only the trackers of these names, in this order.
+    ///
+    /// # Errors
+    /// [`ResultsError::NoTracker`].
+    pub fn only(mut self, names: &[String]) -> Result<Self, ResultsError> {
+        let mut trackers = Vec::new();
+        for name in names {
+            match self.trackers.iter().position(|tracker| tracker.name == *name) {
+                Some(position) => trackers.push(self.trackers.remove(position)),
+                None => {
+                    let there = self.trackers.iter().chain(&trackers).map(|tracker| tracker.name.as_str());
+                    let there = there.collect::<Vec<_>>().join(", ");
+                    return Err(ResultsError::NoTracker { name: name.clone(), there });
+                }
+            }
+        }
+        Ok(Self { trackers })
+    }
+}
+
+impl SeedResults {
+    /// Reads the result of a sequence's segment; `None` if there is none.
+    ///
+    /// # Errors
+    /// [`ResultsError`], naming the file and line.
+    pub fn read(&self, sequence: &str, label: Option<&str>) -> Option<Result<ResultFile, ResultsError>> {
+        self.files.get(&stem(sequence, label)).map(|path| ResultFile::read(path))
+    }
+
+    /// Reads the seconds that each frame of a segment took, `init` first; `None` if that is not known.
+    ///
+    /// # Errors
+    /// [`ResultsError`], naming the file and line.
+    pub fn read_seconds(
+        &self,
+        sequence: &str,
+        label: Option<&str>,
+    ) -> Option<Result<Vec<f64>, ResultsError>> {
+        let path = self.files.get(&stem(sequence, label))?;
+        file::read_seconds(path).transpose()
+    }
+
+    /// Stems `SEQ[_SEGMENT]` of all results.
+    pub fn stems(&self) -> impl Iterator<Item = &str> {
+        self.files.keys().map(String::as_str)
+    }
+
+    /// Jobs that failed, by stem, with the reason.
+    pub fn failures(&self) -> impl Iterator<Item = (&str, &str)> {
+        self.failures.iter().map(|(stem, reason)| (stem.as_str(), reason.as_str()))
+    }
+}
+
+#[cfg(test)]
+mod tests;
