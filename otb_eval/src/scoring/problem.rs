@@ -1,0 +1,62 @@
+//! What could not be scored, and what to do about it.
+
+use thiserror::Error;
+
+use crate::{protocol::ProtocolError, results::ResultsError, toolkits::Crash};
+
+/// A result that could not be scored. Everything else is.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum ScoreProblem {
+    /// The data has no truth of a sequence.
+    #[error("{sequence}: no ground truth of it; check the spelling, or add its folder with --data")]
+    NoTruth {
+        /// The sequence, or the file's stem.
+        sequence: String,
+    },
+    /// The protocol has no segments on a sequence.
+    #[error("{sequence}: {source}")]
+    Protocol {
+        /// The sequence.
+        sequence: String,
+        /// Why not.
+        source: ProtocolError,
+    },
+    /// A tracker has no result on a sequence.
+    #[error("{tracker}, {stem}: no result (seed {seed}){}; run it, or leave the sequence out with --sequences", reason.as_ref().map(|reason| format!(": {reason}")).unwrap_or_default())]
+    Missing {
+        /// The tracker.
+        tracker: String,
+        /// `SEQ[_SEGMENT]`.
+        stem: String,
+        /// The seed, 0 in the flat layout.
+        seed: u64,
+        /// Why the job failed, if it did.
+        reason: Option<String>,
+    },
+    /// A result file that cannot be read.
+    #[error("{tracker}: {source}")]
+    Unreadable {
+        /// The tracker.
+        tracker: String,
+        /// The file and line, and what to do.
+        source: ResultsError,
+    },
+    /// The toolkit itself would fail.
+    #[error("{tracker}, {stem}: {source}")]
+    Crash {
+        /// The tracker.
+        tracker: String,
+        /// `SEQ[_SEGMENT]`.
+        stem: String,
+        /// Which toolkit, and on what.
+        source: Crash,
+    },
+}
+
+impl ScoreProblem {
+    /// Whether it is the toolkit's own failure, which it would show its user as well.
+    pub fn is_crash(&self) -> bool {
+        matches!(self, Self::Crash { .. })
+    }
+}

@@ -1,0 +1,80 @@
+//! Step 1: one tracker with one seed on one sequence.
+
+use super::{ScoreOptions, ScoreProblem, frames_per_second};
+use crate::{
+    dataset::Target,
+    protocol::{starts_of, unscaled},
+    results::{ResultFile, SeedResults},
+    runner::stem,
+    toolkits::{Curves, Hits, evaluate},
+};
+
+/// What became of a sequence.
+pub(super) struct SequenceOutcome {
+    /// `None` if a segment is missing, unreadable or crashes the toolkit.
+    pub(super) curves: Option<Curves>,
+    pub(super) frames_per_second: Option<f64>,
+    pub(super) problems: Vec<ScoreProblem>,
+}
+
+pub(super) fn score(
+    tracker: &str,
+    seed: &SeedResults,
+    target: &Target,
+    options: &ScoreOptions,
+) -> SequenceOutcome {
+    let (mut total, mut problems, mut seconds) = (None::<Hits>, Vec::new(), vec![0.0]);
+    for (label, start) in starts_of(options.protocol, &target.truth).unwrap_or_default() {
+        let label = label.as_deref();
+        match segment_hits(tracker, seed, target, label, start, options) {
+            Ok(hits) => match &mut total {
+                Some(total) => total.merge(&hits),
+                None => total = Some(hits),
+            },
+            Err(problem) => problems.push(problem),
+        }
+        match seed.read_seconds(&target.name, label) {
+            Some(Ok(of_segment)) => seconds.extend(of_segment.into_iter().skip(1)),
+            Some(Err(source)) => {
+                problems.push(ScoreProblem::Unreadable { tracker: tracker.to_owned(), source });
+            }
+            None => {}
+        }
+    }
+    let is_whole = problems.is_empty();
+    let curves = total.filter(|_| is_whole).map(|hits| hits.curves(&options.rules));
+    SequenceOutcome { curves, frames_per_second: frames_per_second(&seconds), problems }
+}
+
+fn segment_hits(
+    tracker: &str,
+    seed: &SeedResults,
+    target: &Target,
+    label: Option<&str>,
+    start: usize,
+    options: &ScoreOptions,
+) -> Result<Hits, ScoreProblem> {
+    let stem = stem(&target.name, label);
+    let tracker = tracker.to_owned();
+    let Some(file) = seed.read(&target.name, label) else {
+        let reason = seed.failures().find(|(failed, _)| *failed == stem).map(|(_, reason)| reason.to_owned());
+        return Err(ScoreProblem::Missing { tracker, stem, seed: seed.seed, reason });
+    };
+    let file = match file {
+        Ok(file) => with_scale_undone(file, label, options),
+        Err(source) => return Err(ScoreProblem::Unreadable { tracker, source }),
+    };
+    let truth = &target.truth[start..];
+    options
+        .rules
+        .check_separators(file.separators)
+        .and_then(|()| evaluate(&options.rules, truth, &file.rows))
+        .map_err(|source| ScoreProblem::Crash { tracker, stem, source })
+}
+
+fn with_scale_undone(mut file: ResultFile, label: Option<&str>, options: &ScoreOptions) -> ResultFile {
+    if let Some(label) = label.filter(|_| options.undo_scale) {
+        file.rows.iter_mut().for_each(|row| *row = unscaled(*row, label));
+    }
+    file
+}
