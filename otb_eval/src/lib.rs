@@ -7,4 +7,6 @@ pub mod dataset;
 pub mod protocol;
 pub mod results;
 pub mod runner;
+pub mod scoring;
 pub mod store;
+pub mod toolkits;

@@ -2,7 +2,6 @@
 
 use serde::Serialize;
 
-use super::mean_curves;
 use crate::{
     catalogue::{Attribute, AttributeSource},
     compare::{deviation, mean},
@@ -153,7 +152,7 @@ impl TrackerScores {
         let seeds: Vec<u64> = tracker.seeds.iter().map(|seed| seed.seed).collect();
         let of = |belongs: &dyn Fn(&str) -> bool| {
             let seeds = seed_means(&sequences, seeds.len(), belongs, rules);
-            Some((Scores::of(&seeds)?, over_seeds(&seeds)?))
+            Some((Scores::of(&seeds)?, Curves::mean(&Toolkit::Plain.rules(), seeds.iter())?))
         };
         let by_attribute = attributes.into_iter().filter_map(|(attribute, has)| {
             let count = sequences.iter().filter(|row| row.scores.is_some() && has(&row.sequence)).count();
@@ -185,7 +184,7 @@ fn seed_means(
 ) -> Vec<Curves> {
     let of_seed = |seed: usize| {
         let rows = sequences.iter().filter(|row| belongs(&row.sequence));
-        mean_curves(rules, rows.filter_map(|row| row.curves.get(seed)))
+        Curves::mean(rules, rows.filter_map(|row| row.curves.get(seed)?.as_ref()))
     };
     (0..seeds).filter_map(of_seed).collect()
 }

@@ -1,0 +1,63 @@
+//! Where a toolkit itself would fail.
+
+use thiserror::Error;
+
+use super::Toolkit;
+
+/// A failure that a toolkit's own user would see. Other toolkits may score the same files.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum Crash {
+    /// The files do not have as many rows.
+    #[error(
+        "{toolkit} would fail: the result has {result} rows and the ground truth {truth}; track the sequence again, or score with --toolkit plain or got10k, which drop the rest"
+    )]
+    Lengths {
+        /// The toolkit.
+        toolkit: Toolkit,
+        /// Rows of the result.
+        result: usize,
+        /// Rows of the ground truth.
+        truth: usize,
+    },
+    /// A box that the toolkit refuses.
+    #[error(
+        "{toolkit} would fail: row {row} of the result has a NaN or a negative side; write the last box instead, or score with --toolkit plain"
+    )]
+    BadBox {
+        /// The toolkit.
+        toolkit: Toolkit,
+        /// The row, counted from 1.
+        row: usize,
+    },
+    /// A ground truth that the toolkit refuses.
+    #[error("{toolkit} would fail: row {row} of the ground truth has a NaN; score with --toolkit plain")]
+    NanTruth {
+        /// The toolkit.
+        toolkit: Toolkit,
+        /// The row, counted from 1.
+        row: usize,
+    },
+    /// Two boxes without area.
+    #[error(
+        "{toolkit} would divide by zero: row {row} of both result and ground truth has no area; score with --toolkit plain"
+    )]
+    NoArea {
+        /// The toolkit.
+        toolkit: Toolkit,
+        /// The row, counted from 1.
+        row: usize,
+    },
+    /// Numbers that the toolkit's reader cannot tell apart.
+    #[error(
+        "{toolkit} would fail: it reads numbers separated by {takes}, not {found}; write them with `otb_eval convert`, or score with --toolkit plain"
+    )]
+    Separators {
+        /// The toolkit.
+        toolkit: Toolkit,
+        /// What it takes.
+        takes: &'static str,
+        /// What stands there.
+        found: &'static str,
+    },
+}
