@@ -3,13 +3,16 @@
 
 use std::path::{Path, PathBuf};
 
-/// Where the real sequences are: INFOPART_DATA, or `shared/data` beside the project. Without them it says aloud that
+/// Where the real sequences are: INFOPART_DATA, or `shared/data` beside the project (or beside a
+/// folder that it is in). Without them it says aloud that
 /// the test is skipped.
 pub fn data_dir() -> Option<PathBuf> {
-    let found = match std::env::var_os("INFOPART_DATA") {
-        Some(given) => PathBuf::from(given),
-        None => Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data"),
-    };
+    let beside = |folder: &Path| folder.join("shared/data");
+    let found = std::env::var_os("INFOPART_DATA").map(PathBuf::from).unwrap_or_else(|| {
+        let package = Path::new(env!("CARGO_MANIFEST_DIR"));
+        let found = package.ancestors().map(beside).find(|data| data.join("otb").is_dir());
+        found.unwrap_or_else(|| beside(package.parent().unwrap_or(package)))
+    });
     if found.join("otb").is_dir() {
         return Some(found);
     }
