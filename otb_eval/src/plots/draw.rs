@@ -164,7 +164,9 @@ impl<B: DrawingBackend> Canvas<'_, B> {
     }
 
     fn text(&self, text: &str, at: Point, size: f64, anchor: (HPos, VPos)) -> Drawn<B> {
-        self.area.draw_text(text, &self.style(size, anchor), self.pixel(at))
+        // Pixels are centred with the room for descenders, SVG without it.
+        let drop = if self.cuts_dashes && matches!(anchor.1, VPos::Center) { 0.12 * size } else { 0.0 };
+        self.area.draw_text(text, &self.style(size, anchor), self.pixel((at.0, at.1 + drop)))
     }
 
     fn style(&self, size: f64, (across, down): (HPos, VPos)) -> TextStyle<'static> {

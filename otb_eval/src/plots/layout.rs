@@ -18,14 +18,14 @@ const MARGIN_TOP: f64 = 42.0;
 const MARGIN_BOTTOM: f64 = 58.0;
 
 /// Between the legend and the edge of the plotting area, and between the legend and the curves.
-const GAP: f64 = 8.0;
+const GAP: f64 = 6.0;
 /// Within the legend's box.
-const PADDING: f64 = 7.0;
+const PADDING: f64 = 6.0;
 /// A row's height and its line's length, in heights of its letters.
-const ROW: f64 = 1.3;
-const SAMPLE: f64 = 3.0;
+const ROW: f64 = 1.18;
+const SAMPLE: f64 = 2.8;
 /// Heights of the legend's letters to try inside the area.
-const LETTERS: [f64; 4] = [15.0, 14.0, 13.0, 12.0];
+const LETTERS: [f64; 6] = [17.0, 16.0, 15.0, 14.0, 13.0, 12.0];
 /// The narrowest plotting area beside a legend.
 const NARROWEST: f64 = 260.0;
 
@@ -201,7 +201,7 @@ fn text_width(text: &str, letters: f64) -> f64 {
     let font = FontDesc::new(FontFamily::Name(FONTS), MEASURED_AT, FontStyle::Normal);
     let measured =
         font.box_size(text).map_or(0.5 * MEASURED_AT * text.chars().count() as f64, |s| f64::from(s.0));
-    measured * letters / MEASURED_AT * 1.1
+    measured * letters / MEASURED_AT * 1.06
 }
 
 /// The marks of an axis from 0 to `end`: at most ten steps of 1, 2 or 5 times a power of ten, and how many decimals

@@ -15,6 +15,7 @@ use thiserror::Error;
 
 pub use csv::curves_csv;
 pub use layout::Area;
+pub(crate) use render::escape;
 pub use style::Style;
 
 /// One tracker's curve.
