@@ -1,6 +1,6 @@
 //! Draws a plot in layers, on any backend.
 //!
-//! 1. Background and grid.
+//! 1. Background, grid and the mark of the threshold that scores are read at.
 //! 2. Curves, the best ranked last, so that it lies on top.
 //! 3. Axes, title and labels.
 //! 4. The legend, a row a curve.
@@ -36,6 +36,7 @@ const LETTERS_PER_SIZE: f64 = 1.24;
 pub(super) enum Layer {
     Background,
     Grid,
+    Mark,
     Curve(usize),
     Axes,
     LegendBox,
@@ -45,7 +46,7 @@ pub(super) enum Layer {
 /// All layers of a plot, the lowest first.
 pub(super) fn layers(plot: &Plot, layout: &Layout) -> Vec<Layer> {
     let ranking = plot.ranking();
-    let mut layers = vec![Layer::Background, Layer::Grid];
+    let mut layers = vec![Layer::Background, Layer::Grid, Layer::Mark];
     layers.extend(ranking.iter().rev().map(|&curve| Layer::Curve(curve)));
     layers.push(Layer::Axes);
     if layout.legend.is_some() {
@@ -82,6 +83,7 @@ impl<B: DrawingBackend> Canvas<'_, B> {
         let drawn = match layer {
             Layer::Background => self.rectangle((0.0, 0.0), (WIDTH, HEIGHT), WHITE_PAPER, 1.0),
             Layer::Grid => self.grid(plot, layout),
+            Layer::Mark => self.mark(plot, layout),
             Layer::Curve(curve) => {
                 let points = plot.points(layout.area, &plot.curves[curve]);
                 self.curve(&points, plot.curves[curve].style)
@@ -101,6 +103,11 @@ impl<B: DrawingBackend> Canvas<'_, B> {
         for y in ticks(1.0).0 {
             self.line(&[area.at(0.0, y), area.at(1.0, y)], GRID, 1.0)?;
         }
+        Ok(())
+    }
+
+    fn mark(&self, plot: &Plot, layout: &Layout) -> Drawn<B> {
+        let area = layout.area;
         if let Some(mark) = plot.mark.map(|mark| mark / plot.x_max).filter(|mark| (0.0..=1.0).contains(mark))
         {
             for piece in cut(&[area.at(mark, 0.0), area.at(mark, 1.0)], &[2.0, 4.0]) {

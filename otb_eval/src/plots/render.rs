@@ -36,6 +36,9 @@ impl Plot {
         );
         for layer in layers(self, &layout) {
             let drawn = self.svg_layer(&layout, layer)?;
+            if drawn.is_empty() {
+                continue;
+            }
             let attributes = self.svg_attributes(layer);
             let hit = hit_area(&layout, layer);
             let _ = writeln!(svg, "<g {attributes}>{hit}{drawn}</g>");
@@ -92,6 +95,7 @@ impl Plot {
         match layer {
             Layer::Background => "class=\"paper\"".into(),
             Layer::Grid => "class=\"grid\"".into(),
+            Layer::Mark => "class=\"mark\"".into(),
             Layer::Axes => "class=\"axes\"".into(),
             Layer::LegendBox => "class=\"legend\"".into(),
             Layer::Curve(curve) => {

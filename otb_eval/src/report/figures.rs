@@ -77,7 +77,11 @@ pub(super) fn attributes(report: &Report) -> String {
 }
 
 fn bars(report: &Report, chart: &AttributeChart) -> String {
-    let mut html = String::from("<div class=\"scroll\"><div class=\"bars\">\n");
+    let mut html = String::from("<div class=\"scroll\"><div class=\"bars\">\n<div class=\"scale\">");
+    for fifth in (0..=5).rev() {
+        let _ = write!(html, "<span>{:.1}</span>", f64::from(fifth) / 5.0);
+    }
+    html.push_str("</div>\n");
     for row in &chart.attributes {
         html.push_str("<div class=\"group\"><div class=\"stack\">");
         for (place, score) in row.scores.iter().enumerate() {
