@@ -4,7 +4,9 @@
 pub mod catalogue;
 pub mod compare;
 pub mod dataset;
+pub mod plots;
 pub mod protocol;
+pub mod report;
 pub mod results;
 pub mod runner;
 pub mod scoring;
