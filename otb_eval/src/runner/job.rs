@@ -75,8 +75,8 @@ impl Job {
     }
 }
 
-/// `SEQ` or `SEQ_SEGMENT`.
-pub(crate) fn stem(sequence: &str, label: Option<&str>) -> String {
+/// `SEQ` or `SEQ_SEGMENT`: what a sequence's files are called.
+pub fn stem(sequence: &str, label: Option<&str>) -> String {
     match label {
         Some(label) => format!("{sequence}_{label}"),
         None => sequence.to_owned(),

@@ -11,7 +11,7 @@ mod pool;
 
 pub use execute::{Recording, execute};
 pub use factory::{FactoryError, InfoPartFactory, TrackerFactory, named_factory};
-pub use job::Job;
-pub(crate) use job::stem;
+pub use job::{Job, stem};
+
 pub use plan::{PlanOptions, PlanProblem, Shard, plan};
 pub use pool::{Outcome, RunOptions, RunSummary, run_jobs};

@@ -5,6 +5,7 @@
 //! 2. a tracker's curves are the unweighted mean of its sequences' curves, for each seed,
 //! 3. what is reported is the mean over seeds, and the spread over them.
 
+mod measure;
 mod problem;
 mod sequence;
 mod speed;
@@ -22,6 +23,7 @@ use crate::{
     toolkits::Rules,
 };
 
+pub use measure::{Measure, UnknownMeasure};
 pub use problem::ScoreProblem;
 pub use speed::frames_per_second;
 pub use table::{AttributeScores, Scores, SequenceScores, Spread, Table, TrackerScores};
@@ -155,4 +157,4 @@ fn attribute_sets(source: Option<AttributeSource>) -> Vec<(Attribute, impl Fn(&s
 }
 
 #[cfg(test)]
-mod tests {}
+mod tests;

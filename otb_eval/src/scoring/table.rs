@@ -43,7 +43,6 @@ pub struct TrackerScores {
     /// Updates a second, the mean over sequences; `None` without times.
     pub frames_per_second: Option<f64>,
     /// Mean curves over sequences and seeds.
-    #[serde(skip)]
     pub curves: Option<Curves>,
 }
 

@@ -35,6 +35,20 @@ impl Reason {
     }
 }
 
+impl Reason {
+    /// The same reason for another number of rows.
+    pub fn with_rows(self, rows: usize) -> Self {
+        match self {
+            Self::FirstRow => Self::FirstRow,
+            Self::NotPositive(_) => Self::NotPositive(rows),
+            Self::NanTruth(_) => Self::NanTruth(rows),
+            Self::LostBoxes(_) => Self::LostBoxes(rows),
+            Self::Shorter(_) => Self::Shorter(rows),
+            Self::Longer(_) => Self::Longer(rows),
+        }
+    }
+}
+
 impl fmt::Display for Reason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let rows = |count: usize| if count == 1 { "1 row".to_owned() } else { format!("{count} rows") };
