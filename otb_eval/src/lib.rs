@@ -4,6 +4,7 @@
 pub mod catalogue;
 pub mod compare;
 pub mod dataset;
+pub mod figures;
 pub mod plots;
 pub mod protocol;
 pub mod report;

@@ -1,0 +1,92 @@
+//! From scores to plots and to the report: which curves are drawn, and what the page shows.
+
+mod page;
+mod strips;
+
+use crate::{
+    catalogue::Attribute,
+    plots::{Curve, Plot, normalised_precision_plot, precision_plot, success_plot},
+    scoring::{Table, TrackerScores},
+    toolkits::Curves,
+};
+
+pub use page::{PageOptions, page};
+pub use strips::{StripProblem, strips};
+
+/// A plot and the name of its files.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NamedPlot {
+    /// Such as `success_ope` or `precision_tre_OCC`.
+    pub name: String,
+    /// The plot.
+    pub plot: Plot,
+}
+
+/// Success, precision and, where the toolkit has it, normalised precision over all sequences, and then success and
+/// precision over the sequences of each attribute. The legends rank trackers by AUC, by precision at 20 pixels and by
+/// normalised precision.
+pub fn plots(table: &Table) -> Vec<NamedPlot> {
+    let protocol = table.protocol;
+    let all = |one: &TrackerScores| one.curves.clone();
+    let mut named = Vec::new();
+    for plot in [success(table, protocol.title(), all), precision(table, protocol.title(), all)] {
+        named.extend(plot.map(|(kind, plot)| NamedPlot { name: format!("{kind}_{protocol}"), plot }));
+    }
+    let normalised = normalised(table, protocol.title(), all);
+    named.extend(normalised.map(|plot| NamedPlot { name: format!("normalised_precision_{protocol}"), plot }));
+    for attribute in Attribute::ALL {
+        let of = |one: &TrackerScores| {
+            let scores = one.attributes.iter().find(|scores| scores.attribute == attribute)?;
+            Some(scores.curves.clone())
+        };
+        let Some(sequences) = sequences_with(table, attribute) else { continue };
+        let title = format!("{}, {} ({sequences})", protocol.title(), attribute.title());
+        for plot in [success(table, &title, of), precision(table, &title, of)] {
+            let name = |kind: &str| format!("{kind}_{protocol}_{attribute}");
+            named.extend(plot.map(|(kind, plot)| NamedPlot { name: name(kind), plot }));
+        }
+    }
+    named
+}
+
+/// How many scored sequences have an attribute; `None` if no tracker has scores for it.
+fn sequences_with(table: &Table, attribute: Attribute) -> Option<usize> {
+    let attributes = table.trackers.iter().flat_map(|one| &one.attributes);
+    attributes.filter(|scores| scores.attribute == attribute).map(|scores| scores.sequences).max()
+}
+
+type NamedKind = Option<(&'static str, Plot)>;
+
+fn success(table: &Table, title: &str, of: impl Fn(&TrackerScores) -> Option<Curves>) -> NamedKind {
+    let y = |curves: &Curves| Some((curves.auc(), curves.success.to_vec()));
+    let curves = curves(table, of, |index| index as f64 / 20.0, y);
+    (!curves.is_empty()).then(|| ("success", success_plot(format!("Success plots of {title}"), curves)))
+}
+
+fn precision(table: &Table, title: &str, of: impl Fn(&TrackerScores) -> Option<Curves>) -> NamedKind {
+    let y = |curves: &Curves| Some((curves.precision_at_20(), curves.precision.to_vec()));
+    let curves = curves(table, of, |index| index as f64, y);
+    (!curves.is_empty()).then(|| ("precision", precision_plot(format!("Precision plots of {title}"), curves)))
+}
+
+fn normalised(table: &Table, title: &str, of: impl Fn(&TrackerScores) -> Option<Curves>) -> Option<Plot> {
+    let y = |curves: &Curves| Some((curves.normalised_precision()?, curves.normalised?.to_vec()));
+    let curves = curves(table, of, |index| index as f64 / 100.0, y);
+    let title = format!("Normalised precision plots of {title}");
+    (!curves.is_empty()).then(|| normalised_precision_plot(title, curves))
+}
+
+/// A curve a tracker that has scores; its style is the tracker's place in the table.
+fn curves(
+    table: &Table,
+    of: impl Fn(&TrackerScores) -> Option<Curves>,
+    x: impl Fn(usize) -> f64,
+    y: impl Fn(&Curves) -> Option<(f64, Vec<f64>)>,
+) -> Vec<Curve> {
+    let curve = |(style, one): (usize, &TrackerScores)| {
+        let (score, y) = y(&of(one)?)?;
+        let x = (0..y.len()).map(&x).collect();
+        Some(Curve { label: one.tracker.clone(), style, score, x, y })
+    };
+    table.trackers.iter().enumerate().filter_map(curve).collect()
+}
