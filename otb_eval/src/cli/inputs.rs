@@ -11,7 +11,7 @@ use otb_eval::{catalogue, dataset::Dataset};
 pub struct DataArgs {
     /// Folders of OTB sequences, or single ones (img/ and groundtruth_rect.txt); where frames are not needed, also a
     /// JSON file of boxes such as OTB100.json
-    #[arg(long, value_name = "DATA", num_args = 1.., required = true)]
+    #[arg(long, value_name = "DATA", num_args = 1..)]
     pub data: Vec<PathBuf>,
     /// Sequences by name, in any toolkit's spelling, and lists of them: tb100, tb50, cvpr13, person, people8, other7
     /// [default: all of the data]
@@ -22,6 +22,10 @@ pub struct DataArgs {
 impl DataArgs {
     /// The data, and the problems of sequences that could not be read.
     pub fn open(&self) -> Result<(Dataset, Problems)> {
+        if self.data.is_empty() {
+            let how = "give --data: folders of OTB sequences, single ones, or a JSON file of boxes";
+            return Err(BadInput(how.into()).into());
+        }
         let (dataset, unreadable) = Dataset::open(&self.data).context("--data")?;
         let mut problems = Problems::default();
         for problem in unreadable {
@@ -39,19 +43,24 @@ impl DataArgs {
 /// Problems of single sequences: told at once, and in the end the reason for exit code 2.
 #[derive(Debug, Default)]
 pub struct Problems {
-    count: usize,
+    told: Vec<String>,
 }
 
 impl Problems {
     /// Tells one on standard error.
     pub fn tell(&mut self, problem: &dyn Display) {
         eprintln!("problem: {problem}");
-        self.count += 1;
+        self.told.push(problem.to_string());
+    }
+
+    /// Those told so far.
+    pub fn told(&self) -> &[String] {
+        &self.told
     }
 
     /// An error if there was any problem.
     pub fn into_result(self) -> Result<()> {
-        match self.count {
+        match self.told.len() {
             0 => Ok(()),
             1 => Err(BadInput("1 problem, told above; everything else was done".into()).into()),
             count => Err(BadInput(format!("{count} problems, told above; everything else was done")).into()),

@@ -6,14 +6,21 @@ use anyhow::Error;
 use clap::{Parser, Subcommand};
 use infopart::program::{self, BAD_INPUT, INTERRUPTED};
 use otb_eval::{
-    catalogue::CatalogueError, dataset::DatasetError, protocol::ProtocolError, runner::FactoryError,
-    store::StoreError,
+    catalogue::CatalogueError, dataset::DatasetError, protocol::ProtocolError, results::ResultsError,
+    runner::FactoryError, store::StoreError,
 };
 
+mod compare;
+mod differences;
 mod inputs;
 mod jobs;
 mod plan;
+mod plot;
+mod report;
 mod run;
+mod score;
+mod scored;
+mod text_table;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -40,6 +47,18 @@ enum Command {
     /// Print the jobs of a run as JSON lines, without running them
     #[command(after_help = plan::EXAMPLES)]
     Plan(plan::PlanArgs),
+    /// Score results under one toolkit's rules, or under all six and say why they differ
+    #[command(after_help = score::EXAMPLES)]
+    Score(Box<score::ScoreArgs>),
+    /// Compare two trackers on the same sequences and seeds
+    #[command(after_help = compare::EXAMPLES)]
+    Compare(Box<compare::CompareArgs>),
+    /// Draw success and precision plots
+    #[command(after_help = plot::EXAMPLES)]
+    Plot(Box<plot::PlotArgs>),
+    /// Put everything on one HTML page
+    #[command(after_help = report::EXAMPLES)]
+    Report(Box<report::ReportArgs>),
 }
 
 /// Runs the program on its command line.
@@ -47,6 +66,10 @@ pub fn main() -> ExitCode {
     let outcome = match Cli::parse().command {
         Command::Run(args) => run::run(&args),
         Command::Plan(args) => plan::plan(&args),
+        Command::Score(args) => score::score(&args),
+        Command::Compare(args) => compare::run(&args),
+        Command::Plot(args) => plot::plot(&args),
+        Command::Report(args) => report::report(&args),
     };
     program::report_with(outcome, code_of)
 }
@@ -60,7 +83,8 @@ fn code_of(error: &Error) -> Option<u8> {
         || error.is::<DatasetError>()
         || error.is::<ProtocolError>()
         || error.is::<FactoryError>()
-        || error.is::<StoreError>();
+        || error.is::<StoreError>()
+        || error.is::<ResultsError>();
     is_input.then_some(BAD_INPUT)
 }
 

@@ -1,0 +1,181 @@
+//! `otb_eval compare`: two trackers on the same sequences and seeds.
+
+use std::{fmt::Write as _, path::PathBuf};
+
+use anyhow::Result;
+use clap::Args;
+use infopart::program::BadInput;
+use otb_eval::{
+    compare::{Comparison, Pair, RESAMPLES, compare},
+    protocol::Protocol,
+    scoring::{Measure, Table, TrackerScores},
+    toolkits::Toolkit,
+};
+use serde::Serialize;
+
+use super::{
+    score::{print, write},
+    scored::ScoredArgs,
+    text_table::TextTable,
+};
+
+pub const EXAMPLES: &str = "\
+Examples:
+  otb_eval compare infopart whole-body --data otb people --results results
+  otb_eval compare infopart whole-body --data otb people --results results --protocol tre --json part.json
+
+A difference is A minus B, paired by sequence and seed; positive is better for A. Its 95 % interval is a bootstrap that \
+draws sequences, and seeds within them: where it spans 0, other sequences could well reverse it. Times are compared \
+only if both were measured on one machine with nothing else running.";
+
+/// Seed of the bootstrap: the same results give the same interval.
+const BOOTSTRAP_SEED: u64 = 1;
+
+#[derive(Debug, Args)]
+pub struct CompareArgs {
+    /// The first tracker
+    #[arg(value_name = "A")]
+    first: String,
+    /// The second tracker
+    #[arg(value_name = "B")]
+    second: String,
+    #[command(flatten)]
+    scored: ScoredArgs,
+    /// Whose rules
+    #[arg(long, value_name = "NAME", default_value = "plain")]
+    toolkit: Toolkit,
+    /// Which results: ope, tre or sre
+    #[arg(long, value_name = "ope|tre|sre", default_value = "ope")]
+    protocol: Protocol,
+    /// Write the comparison as JSON
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+}
+
+/// Everything that is told of two trackers.
+#[derive(Debug, Serialize)]
+struct Outcome {
+    first: String,
+    second: String,
+    protocol: Protocol,
+    toolkit: Toolkit,
+    seeds: Vec<u64>,
+    auc: Comparison,
+    precision: Comparison,
+    /// Time of A over time of B, per update: the geometric mean over sequences.
+    time_ratio: Option<f64>,
+}
+
+pub fn run(args: &CompareArgs) -> Result<()> {
+    let (dataset, mut problems) = args.scored.data.open()?;
+    let names = [args.first.clone(), args.second.clone()];
+    let results = args.scored.open_results(args.protocol)?.only(&names)?;
+    let (table, unscored) = args.scored.score(&dataset, &results, args.toolkit, args.protocol)?;
+    unscored.iter().for_each(|problem| problems.tell(problem));
+    let outcome = outcome(args, &table)?;
+    print(&text(&outcome))?;
+    if let Some(path) = &args.json {
+        write(path, format!("{}\n", serde_json::to_string_pretty(&outcome)?).as_bytes())?;
+    }
+    problems.into_result()
+}
+
+fn outcome(args: &CompareArgs, table: &Table) -> Result<Outcome> {
+    let (first, second) = (&table.trackers[0], &table.trackers[1]);
+    let seeds: Vec<u64> = first.seeds.iter().copied().filter(|seed| second.seeds.contains(seed)).collect();
+    let of = |measure: Measure| {
+        compare(&pairs(first, second, &seeds, measure), RESAMPLES, BOOTSTRAP_SEED).ok_or_else(|| {
+            BadInput(format!(
+                "{} and {} have no sequence and seed in common; run both with the same --sequences and --seeds",
+                args.first, args.second
+            ))
+        })
+    };
+    Ok(Outcome {
+        first: args.first.clone(),
+        second: args.second.clone(),
+        protocol: args.protocol,
+        toolkit: args.toolkit,
+        auc: of(Measure::Auc)?,
+        precision: of(Measure::Precision)?,
+        time_ratio: time_ratio(first, second),
+        seeds,
+    })
+}
+
+/// Sequences that both have with some seed, with the values of the seeds that both have.
+fn pairs(first: &TrackerScores, second: &TrackerScores, seeds: &[u64], measure: Measure) -> Vec<Pair> {
+    let value = |one: &TrackerScores, row: usize, seed: u64| {
+        let place = one.seeds.iter().position(|known| *known == seed)?;
+        measure.on(one.sequences[row].curves[place].as_ref()?)
+    };
+    let pair = |(row, scores): (usize, &otb_eval::scoring::SequenceScores)| {
+        let both = |seed: &u64| Some((value(first, row, *seed)?, value(second, row, *seed)?));
+        let (first, second): (Vec<f64>, Vec<f64>) = seeds.iter().filter_map(both).unzip();
+        Pair { sequence: scores.sequence.clone(), first, second }
+    };
+    first.sequences.iter().enumerate().map(pair).filter(|pair| !pair.first.is_empty()).collect()
+}
+
+fn time_ratio(first: &TrackerScores, second: &TrackerScores) -> Option<f64> {
+    let logarithms: Vec<f64> = first
+        .sequences
+        .iter()
+        .zip(&second.sequences)
+        .filter_map(|(first, second)| Some((second.frames_per_second? / first.frames_per_second?).ln()))
+        .collect();
+    let mean = logarithms.iter().sum::<f64>() / logarithms.len() as f64;
+    (!logarithms.is_empty()).then(|| mean.exp())
+}
+
+fn text(outcome: &Outcome) -> String {
+    let Outcome { first, second, auc, precision, .. } = outcome;
+    let mut text = format!(
+        "{first} against {second}: {} under the rules of {}, {} sequences, {} paired seed(s)\n\n",
+        outcome.protocol.title(),
+        outcome.toolkit,
+        auc.sequences.len(),
+        outcome.seeds.len()
+    );
+    let mut summary = TextTable::new(["measure", first, second, "difference", "95 % interval", "", "wins"]);
+    for (measure, one) in [(Measure::Auc, auc), (Measure::Precision, precision)] {
+        summary.row([
+            measure.title().to_owned(),
+            format!("{:.4}", one.first),
+            format!("{:.4}", one.second),
+            format!("{:+.4}", one.difference),
+            format!("[{:+.4}, {:+.4}]", one.low, one.high),
+            if one.is_clear() { "clear".into() } else { "spans 0".to_owned() },
+            format!("{} : {}", one.first_wins, one.second_wins),
+        ]);
+    }
+    // Writing to a String cannot fail.
+    let _ = writeln!(text, "{summary}");
+    if let Some(ratio) = outcome.time_ratio {
+        let _ =
+            writeln!(text, "an update of {first} takes {ratio:.3} times one of {second} (geometric mean)\n");
+    }
+    let mut rows = TextTable::new([
+        "sequence",
+        "AUC of A",
+        "of B",
+        "difference",
+        "precision of A",
+        "of B",
+        "difference",
+    ]);
+    for (auc, precision) in auc.sequences.iter().zip(&precision.sequences) {
+        let spread =
+            |deviation: Option<f64>| deviation.map_or(String::new(), |value| format!(" ± {value:.4}"));
+        rows.row([
+            auc.sequence.clone(),
+            format!("{:.4}", auc.first),
+            format!("{:.4}", auc.second),
+            format!("{:+.4}{}", auc.difference, spread(auc.deviation)),
+            format!("{:.4}", precision.first),
+            format!("{:.4}", precision.second),
+            format!("{:+.4}{}", precision.difference, spread(precision.deviation)),
+        ]);
+    }
+    text + &rows.to_string()
+}

@@ -1,0 +1,133 @@
+//! What every command takes that scores results: data, results, trackers, rules.
+
+use std::path::PathBuf;
+
+use anyhow::{Context, Result};
+use clap::{Args, ValueEnum};
+use infopart::program::BadInput;
+use otb_eval::{
+    catalogue::AttributeSource,
+    dataset::Dataset,
+    protocol::Protocol,
+    results::Results,
+    scoring::{ScoreOptions, ScoreProblem, Table, score},
+    toolkits::{Rules, Toolkit},
+};
+
+use super::inputs::{DataArgs, Problems};
+
+#[derive(Debug, Args)]
+pub struct ScoredArgs {
+    #[command(flatten)]
+    pub data: DataArgs,
+    /// Results: what `run` wrote, RESULTS/TRACKER/SEQ.txt, or one tracker's folder
+    #[arg(long, value_name = "RESULTS")]
+    results: Option<PathBuf>,
+    /// Only these trackers, in this order [default: all there are]
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
+    trackers: Option<Vec<String>>,
+    /// Whose attributes the scores by attribute use: tb100 (tb_100.txt), json (OTB100.json) or none [default: the
+    /// toolkit's own; they differ on 14 sequences]
+    #[arg(long, value_name = "tb100|json|none")]
+    attributes: Option<String>,
+    /// What rows are worth that a result lacks, under plain rules
+    #[arg(long, value_enum, default_value_t = MissingRows::Drop)]
+    missing_rows: MissingRows,
+    /// What a row without a box is worth, under plain rules
+    #[arg(long, value_enum, default_value_t = LostRows::AsIs)]
+    lost_boxes: LostRows,
+    /// Leave frames with an invalid ground truth out of every share, as an option of pytracking's does
+    #[arg(long)]
+    exclude_invalid: bool,
+    /// Undo the scaling of sre's scaled runs before comparing, as one of the benchmark's two codes does
+    #[arg(long)]
+    sre_undo_scale: bool,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum MissingRows {
+    /// They are dropped from the ground truth too
+    Drop,
+    /// They are misses
+    Miss,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum LostRows {
+    /// It is a miss
+    AsIs,
+    /// The box before is carried forward
+    Carry,
+}
+
+impl ScoredArgs {
+    /// The folder of results.
+    pub fn results(&self) -> Result<&PathBuf> {
+        let how = "give --results: what `otb_eval run` wrote, or a folder of TRACKER/SEQ.txt";
+        Ok(self.results.as_ref().ok_or_else(|| BadInput(how.into()))?)
+    }
+
+    /// The results of a protocol, of the trackers asked for.
+    pub fn open_results(&self, protocol: Protocol) -> Result<Results> {
+        let results = Results::open(self.results()?, protocol).context("--results")?;
+        Ok(match &self.trackers {
+            Some(names) => results.only(names).context("--trackers")?,
+            None => results,
+        })
+    }
+
+    /// The toolkit's rules with the options asked for.
+    pub fn rules(&self, toolkit: Toolkit) -> Rules {
+        let mut rules = toolkit.rules();
+        if toolkit == Toolkit::Plain {
+            if self.missing_rows == MissingRows::Miss {
+                rules = rules.with_missing_rows_as_misses();
+            }
+            if self.lost_boxes == LostRows::Carry {
+                rules = rules.with_lost_boxes_carried();
+            }
+        }
+        if self.exclude_invalid { rules.with_invalid_frames_excluded() } else { rules }
+    }
+
+    /// Scores the results of a protocol under a toolkit's rules.
+    pub fn score(
+        &self,
+        dataset: &Dataset,
+        results: &Results,
+        toolkit: Toolkit,
+        protocol: Protocol,
+    ) -> Result<(Table, Vec<ScoreProblem>)> {
+        let rules = self.rules(toolkit);
+        let attributes = match self.attributes.as_deref() {
+            None => rules.attributes(),
+            Some("none") => None,
+            Some(word) => Some(word.parse::<AttributeSource>().context("--attributes")?),
+        };
+        let sequences = self.data.selected()?;
+        let undo_scale = self.sre_undo_scale;
+        Ok(score(dataset, results, &ScoreOptions { rules, protocol, sequences, attributes, undo_scale }))
+    }
+
+    /// Scores every protocol asked for, or all there are, and tells what could not be scored.
+    pub fn tables(
+        &self,
+        dataset: &Dataset,
+        protocol: Option<Protocol>,
+        toolkit: Toolkit,
+        problems: &mut Problems,
+    ) -> Result<Vec<(Results, Table)>> {
+        let protocols = match protocol {
+            Some(protocol) => vec![protocol],
+            None => Results::protocols(self.results()?).context("--results")?,
+        };
+        let mut tables = Vec::new();
+        for protocol in protocols {
+            let results = self.open_results(protocol)?;
+            let (table, unscored) = self.score(dataset, &results, toolkit, protocol)?;
+            unscored.iter().for_each(|problem| problems.tell(problem));
+            tables.push((results, table));
+        }
+        Ok(tables)
+    }
+}
