@@ -9,6 +9,8 @@
 //!
 //! The cost depends on the region alone, never on the frame.
 
+use std::ops::Range;
+
 use crate::{
     features::hog::BINS,
     frame::{FrameView, PixelFormat},
@@ -80,8 +82,18 @@ pub struct RegionIntegrals {
 #[derive(Debug, Clone, Default)]
 struct GradientRows {
     luminance: [Vec<f32>; 3],
-    magnitude: Vec<f32>,
-    position: Vec<f32>,
+    split: Vec<SplitGradient>,
+}
+
+/// A gradient's magnitude, split between two bins.
+#[derive(Debug, Clone, Copy, Default)]
+struct SplitGradient {
+    /// What the lower bin gets.
+    lower: u32,
+    /// What the upper bin gets.
+    upper: u32,
+    /// The upper bin, in 0..=BINS; the lower one is that before it, around the circle.
+    bin: u32,
 }
 
 impl Default for RegionIntegrals {
@@ -113,8 +125,12 @@ impl RegionIntegrals {
         self.region = region;
         self.channels = if frame.format() == PixelFormat::Gray { 1 } else { CHANNELS };
         self.cut(frame);
-        self.integrate_colour();
-        self.integrate_orientation();
+        let Self { region, channels, cells, colour, orientation, rows } = self;
+        let cells = &cells[..*channels];
+        rayon::join(
+            || integrate_colour(*region, cells, colour),
+            || integrate_orientation(*region, cells, orientation, rows),
+        );
     }
 
     /// A box of the frame in this region's cells.
@@ -213,100 +229,113 @@ impl RegionIntegrals {
             }
         }
     }
+}
 
-    /// Step 2.
-    fn integrate_colour(&mut self) {
-        let SearchRegion { width, height, .. } = self.region;
-        let stride = width + 1;
-        for (cells, integral) in self.cells.iter().zip(&mut self.colour).take(self.channels) {
-            integral.resize(stride * (height + 1), 0);
-            integral[..stride].fill(0);
-            for (row, cells) in cells.chunks_exact(width).enumerate() {
-                let (above, below) = integral[row * stride..].split_at_mut(stride);
-                let mut sum = 0;
-                below[0] = 0;
-                for ((out, up), &cell) in below[1..].iter_mut().zip(&above[1..]).zip(cells) {
-                    sum += u32::from(cell);
-                    *out = up + sum;
-                }
-            }
-        }
-    }
-
-    /// Step 3.
-    fn integrate_orientation(&mut self) {
-        let SearchRegion { width, height, .. } = self.region;
-        let stride = width + 1;
-        self.orientation.resize(stride * (height + 1), [0; BINS]);
-        self.orientation[..stride].fill([0; BINS]);
-        self.rows.resize(width);
-        self.load_luminance(0, 1);
-        self.load_luminance(0, 2);
-        for row in 0..height {
-            self.rows.luminance.rotate_left(1);
-            self.load_luminance((row + 1).min(height - 1), 2);
-            self.rows.differentiate();
-            let (above, below) = self.orientation[row * stride..].split_at_mut(stride);
-            self.rows.accumulate(&above[1..], below);
-        }
-    }
-
-    fn load_luminance(&mut self, row: usize, slot: usize) {
-        let width = self.region.width;
-        let at = row * width..(row + 1) * width;
-        let out = &mut self.rows.luminance[slot];
-        let [red, green, blue] = &self.cells;
-        if self.channels == 1 {
-            for (out, &grey) in out.iter_mut().zip(&red[at]) {
-                *out = 4.0 * f32::from(grey);
-            }
-        } else {
-            let cells = red[at.clone()].iter().zip(&green[at.clone()]).zip(&blue[at]);
-            for (out, ((&r, &g), &b)) in out.iter_mut().zip(cells) {
-                *out = f32::from(u16::from(r) + 2 * u16::from(g) + u16::from(b));
+/// Step 2.
+fn integrate_colour(region: SearchRegion, cells: &[Vec<u8>], integrals: &mut [Vec<u32>]) {
+    let SearchRegion { width, height, .. } = region;
+    let stride = width + 1;
+    for (cells, integral) in cells.iter().zip(integrals) {
+        integral.resize(stride * (height + 1), 0);
+        integral[..stride].fill(0);
+        for (row, cells) in cells.chunks_exact(width).enumerate() {
+            let (above, below) = integral[row * stride..].split_at_mut(stride);
+            let mut sum = 0;
+            below[0] = 0;
+            for ((out, up), &cell) in below[1..].iter_mut().zip(&above[1..]).zip(cells) {
+                sum += u32::from(cell);
+                *out = up + sum;
             }
         }
     }
 }
 
+/// Step 3.
+fn integrate_orientation(
+    region: SearchRegion,
+    cells: &[Vec<u8>],
+    integral: &mut Vec<[u32; BINS]>,
+    rows: &mut GradientRows,
+) {
+    let SearchRegion { width, height, .. } = region;
+    let stride = width + 1;
+    integral.resize(stride * (height + 1), [0; BINS]);
+    integral[..stride].fill([0; BINS]);
+    rows.resize(width);
+    let row_of = |row: usize| row * width..(row + 1) * width;
+    rows.load_luminance(cells, row_of(0), 1);
+    rows.load_luminance(cells, row_of(0), 2);
+    for row in 0..height {
+        rows.luminance.rotate_left(1);
+        rows.load_luminance(cells, row_of((row + 1).min(height - 1)), 2);
+        rows.differentiate();
+        let (above, below) = integral[row * stride..].split_at_mut(stride);
+        rows.accumulate(&above[1..], below);
+    }
+}
+
 impl GradientRows {
     fn resize(&mut self, width: usize) {
-        for row in self.luminance.iter_mut().chain([&mut self.magnitude, &mut self.position]) {
-            row.resize(width, 0.0);
+        self.luminance.iter_mut().for_each(|row| row.resize(width, 0.0));
+        self.split.resize(width, SplitGradient::default());
+    }
+
+    fn load_luminance(&mut self, cells: &[Vec<u8>], at: Range<usize>, slot: usize) {
+        let out = &mut self.luminance[slot];
+        match cells {
+            [red, green, blue] => {
+                let cells = red[at.clone()].iter().zip(&green[at.clone()]).zip(&blue[at]);
+                for (out, ((&r, &g), &b)) in out.iter_mut().zip(cells) {
+                    *out = f32::from(u16::from(r) + 2 * u16::from(g) + u16::from(b));
+                }
+            }
+            [grey, ..] => {
+                for (out, &grey) in out.iter_mut().zip(&grey[at]) {
+                    *out = 4.0 * f32::from(grey);
+                }
+            }
+            [] => {}
         }
     }
 
-    /// Gradient magnitude and orientation (as a position among the bins, in [-0.5, 7.5]) of the middle row.
+    /// The gradients of the middle row, split between the two nearest bins.
     fn differentiate(&mut self) {
         let [above, middle, below] = &self.luminance;
         let width = middle.len();
-        let outputs = self.magnitude.iter_mut().zip(&mut self.position).enumerate();
-        for (i, (magnitude, position)) in outputs {
-            let dx = middle[(i + 1).min(width - 1)] - middle[i.saturating_sub(1)];
-            let dy = below[i] - above[i];
-            *magnitude = (dx * dx + dy * dy).sqrt();
-            *position = orientation(dx, dy) * BINS as f32 - 0.5;
+        let gradient = |before: f32, after: f32, above: f32, below: f32| split_gradient(after - before, below - above);
+        let inside = middle.windows(3).zip(&above[1..]).zip(&below[1..]);
+        for (out, ((across, &above), &below)) in self.split[1..].iter_mut().zip(inside) {
+            *out = gradient(across[0], across[2], above, below);
+        }
+        for at in [0, width - 1] {
+            let (before, after) = (middle[at.saturating_sub(1)], middle[(at + 1).min(width - 1)]);
+            self.split[at] = gradient(before, after, above[at], below[at]);
         }
     }
 
-    /// Adds the row's magnitudes, split between the two nearest bins, to the integral row `above`; `below` has one
-    /// leading entry more.
+    /// Adds the row's gradients to the integral row `above`; `below` has one leading entry more.
     fn accumulate(&self, above: &[[u32; BINS]], below: &mut [[u32; BINS]]) {
         let mut sums = [0u32; BINS];
         below[0] = sums;
-        let gradients = self.magnitude.iter().zip(&self.position);
-        for ((out, up), (&magnitude, &position)) in below[1..].iter_mut().zip(above).zip(gradients) {
-            let lower = position.floor();
-            let total = (magnitude + 0.5) as u32;
-            let upper_share = (magnitude * (position - lower) + 0.5) as u32;
-            let bin = lower as i32 as usize;
-            sums[bin.wrapping_add(1) % BINS] += upper_share;
-            sums[bin % BINS] += total - upper_share.min(total);
+        for ((out, up), gradient) in below[1..].iter_mut().zip(above).zip(&self.split) {
+            sums[gradient.bin as usize % BINS] += gradient.upper;
+            sums[(gradient.bin as usize + BINS - 1) % BINS] += gradient.lower;
             for b in 0..BINS {
                 out[b] = up[b] + sums[b];
             }
         }
     }
+}
+
+#[inline]
+fn split_gradient(dx: f32, dy: f32) -> SplitGradient {
+    let magnitude = (dx * dx + dy * dy).sqrt();
+    // Half a bin is added so that truncation is the floor.
+    let position = orientation(dx, dy) * BINS as f32 + 0.5;
+    let bin = position as i32;
+    let total = (magnitude + 0.5) as i32;
+    let upper = ((magnitude * (position - bin as f32) + 0.5) as i32).min(total);
+    SplitGradient { lower: (total - upper) as u32, upper: upper as u32, bin: bin as u32 }
 }
 
 /// Orientation of a gradient as a share of the half turn, in [0, 1): 0 is horizontal, 0.5 vertical, sign ignored.

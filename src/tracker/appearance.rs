@@ -89,12 +89,20 @@ pub(super) struct FrameObservation<'a> {
     pub appearance: &'a Appearance,
     /// h / w of the part.
     pub aspect: f64,
+    pub locator: Option<(&'a super::locator::Locator, f64, crate::geometry::Region, crate::geometry::Region)>,
 }
 
 impl Observation<3> for FrameObservation<'_> {
     fn log_likelihood(&self, state: &PartState) -> f64 {
         let hypothesis = self.integrals.to_region(box_of(state, self.aspect));
         let fit = self.appearance.fit(self.integrals, &hypothesis);
-        f64::from(self.appearance.score_weight * fit.score - self.appearance.hog_weight * fit.hog_distance)
+        let own = f64::from(self.appearance.score_weight * fit.score - self.appearance.hog_weight * fit.hog_distance);
+        match self.locator {
+            Some((locator, weight, region, seen)) => {
+                let full = region.full_from_part(box_of(state, self.aspect));
+                own + weight * f64::from(locator.at(&seen.part_from_full(full)))
+            }
+            None => own,
+        }
     }
 }

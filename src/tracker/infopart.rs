@@ -68,6 +68,7 @@ struct Target {
     estimate: Estimate,
     sample: Vec<f32>,
     set_estimates: Vec<ParticleEstimate<3>>,
+    locator: Option<super::locator::Locator>,
 }
 
 impl InfoPart {
@@ -108,6 +109,13 @@ impl InfoPart {
         self.integrals.compute(&frame, search_region(field, &part, parameters.max_part_cells));
         self.stopwatch.lap("integral images");
         let mut target = Target::new(parameters, &frame, &self.integrals, box_in_frame, part);
+        if let Some(locator) = &mut target.locator {
+            let seen = parameters.correlation_region.part_from_full(box_in_frame);
+            let window = locator.window(&seen);
+            let extent = square(window, parameters.correlation_margin);
+            self.integrals.compute(&frame, search_region(extent, &part, parameters.max_part_cells));
+            locator.learn(&self.integrals, &seen);
+        }
         target.sample(parameters, &self.integrals, (parameters.first_targets, parameters.first_backgrounds));
         self.stopwatch.lap("samples");
         target.train();
@@ -122,14 +130,36 @@ impl InfoPart {
         let parameters = &self.parameters;
         self.stopwatch.start();
         target.frame += 1;
+        let seen = parameters.correlation_region.part_from_full(target.estimate.box_in_frame);
+        let part = target.estimate.part_in_frame;
+        if let Some(locator) = &mut target.locator {
+            let extent = square(locator.window(&seen), parameters.correlation_margin);
+            self.integrals.compute(&frame, search_region(extent, &part, parameters.max_part_cells));
+            self.stopwatch.lap("integral images");
+            locator.look(&self.integrals, &seen);
+            self.stopwatch.lap("correlation");
+        }
         target.predict(parameters);
         self.stopwatch.lap("prediction");
-        let part = target.estimate.part_in_frame;
-        self.integrals.compute(&frame, search_region(target.extent(), &part, parameters.max_part_cells));
-        self.stopwatch.lap("integral images");
-        target.correct(parameters.seed, &self.integrals);
+        if target.locator.is_none() {
+            self.integrals.compute(&frame, search_region(target.extent(), &part, parameters.max_part_cells));
+            self.stopwatch.lap("integral images");
+        }
+        target.correct(parameters, &self.integrals);
         self.stopwatch.lap("likelihood");
         let fit = target.judge(parameters, &self.integrals);
+        if std::env::var_os("INFODBG").is_some() {
+            let (at, peak) = target.locator.as_ref().map_or((0.0, 0.0), |l| {
+                (l.at(&parameters.correlation_region.part_from_full(target.estimate.box_in_frame)), l.peak.value)
+            });
+            let sharp = target.locator.as_ref().map_or(0.0, |l| l.peak.sharpness);
+            let b = target.estimate.box_in_frame;
+            eprintln!(
+                "DBG {} {at:.4} {peak:.4} {sharp:.3} {:.4} {:.4} {:.2} {:.4} {:.2} {:.2} {:.2} {:.2}",
+                target.frame + 1, fit.score, fit.hog_distance, target.estimate.effective_sample_size,
+                target.set_estimates[0].log_evidence, b.x, b.y, b.w, b.h
+            );
+        }
         self.stopwatch.lap("estimate");
         if target.update_is_due(parameters, &fit) {
             target.age_template(parameters.hog_ageing as f32, &self.integrals);
@@ -137,6 +167,14 @@ impl InfoPart {
             self.stopwatch.lap("samples");
             target.train();
             self.stopwatch.lap("training");
+        }
+        if let Some(locator) = &mut target.locator
+            && target.frame.is_multiple_of(parameters.correlation_interval as u64)
+            && f64::from(fit.score) > parameters.correlation_gate
+        {
+            let seen = parameters.correlation_region.part_from_full(target.estimate.box_in_frame);
+            locator.learn(&self.integrals, &seen);
+            self.stopwatch.lap("correlation learning");
         }
         Ok(target.estimate.clone())
     }
@@ -181,6 +219,10 @@ impl Target {
             estimate,
             sample: Vec::with_capacity(parameters.feature_pool),
             set_estimates: Vec::with_capacity(parameters.particle_sets),
+            locator: (parameters.correlation_weight > 0.0).then(|| {
+                let seen = parameters.correlation_region.part_from_full(box_in_frame);
+                super::locator::Locator::new(parameters, &seen)
+            }),
         }
     }
 
@@ -207,7 +249,23 @@ impl Target {
             limits: self.limits,
         };
         for (set, particles) in self.sets.iter_mut().enumerate() {
-            particles.predict(&walk, &mut stream(parameters.seed, self.frame, Use::Particles(set)));
+            let mut rng = stream(parameters.seed, self.frame, Use::Particles(set));
+            match &self.locator {
+                Some(locator) if parameters.peak_share > 0.0 => {
+                    let full = parameters.region.full_from_part(part);
+                    let seen = parameters.correlation_region.part_from_full(full);
+                    let (sx, sy) = seen.centre();
+                    let (px, py) = part.centre();
+                    let proposal = super::locator::PeakProposal {
+                        walk,
+                        peak: (locator.peak.x + px - sx, locator.peak.y + py - sy),
+                        spread: parameters.peak_spread * part.area().sqrt(),
+                        share: parameters.peak_share,
+                    };
+                    particles.propose(&proposal, &walk, &mut rng);
+                }
+                _ => particles.predict(&walk, &mut rng),
+            }
         }
     }
 
@@ -227,8 +285,12 @@ impl Target {
     }
 
     /// Step 3a, correction, and 3b: the sets' means weighted by their mean likelihoods.
-    fn correct(&mut self, seed: u64, integrals: &RegionIntegrals) {
-        let observation = FrameObservation { integrals, appearance: &self.appearance, aspect: self.aspect };
+    fn correct(&mut self, parameters: &CheckedParameters, integrals: &RegionIntegrals) {
+        let seed = parameters.seed;
+        let locator = self.locator.as_ref().map(|locator| {
+            (locator, parameters.correlation_weight, parameters.region, parameters.correlation_region)
+        });
+        let observation = FrameObservation { integrals, appearance: &self.appearance, aspect: self.aspect, locator };
         self.set_estimates.clear();
         for (set, particles) in self.sets.iter_mut().enumerate() {
             // Past the prediction's draws: the frame's second half of the stream numbers.
@@ -312,6 +374,11 @@ fn particle_set(parameters: &CheckedParameters, part: &Rect, set: usize) -> Part
         estimate_after_resampling: parameters.estimate_after_resampling,
     };
     ParticleFilter::new(states, options)
+}
+
+fn square(window: crate::correlation::window::Window, margin: f64) -> Rect {
+    let side = window.side * margin;
+    Rect::new(window.x - side / 2.0, window.y - side / 2.0, side, side)
 }
 
 /// The cells that hold `extent`, coarse enough that the part has at most `max_part_cells`.

@@ -5,6 +5,7 @@ mod confidence;
 mod estimate;
 mod first_box;
 mod infopart;
+mod locator;
 mod motion;
 mod parameters;
 mod sampling;

@@ -71,6 +71,10 @@ pub(super) struct PartWalk {
 }
 
 impl PartWalk {
+    pub fn confine(&self, state: PartState) -> PartState {
+        self.limits.confine(state, self.aspect)
+    }
+
     /// How far a step of `dw` in width moves the corner.
     fn corner_shift(&self, dw: f64) -> (f64, f64) {
         if self.about_centre { (-dw / 2.0, -self.aspect * dw / 2.0) } else { (0.0, 0.0) }

@@ -102,7 +102,7 @@ parameters! {
     region: Region = Region::Part, "part, whole or the upper fraction in (0, 1]",
         "What is tracked of the box, from its top edge down. `part` is head and torso of a person, the upper 5/8.";
 
-    particles: usize = 800, [1, 100_000], "particles",
+    particles: usize = 300, [1, 100_000], "particles",
         "N_s: particles, all sets together.";
     particle_sets: usize = 1, [1, 32], "sets",
         "n: independent particle sets that share the particles; their means are weighted by mean likelihood.";
@@ -125,9 +125,9 @@ parameters! {
     estimate_after_resampling: bool = false, "true or false",
         "Whether the estimate is taken after resampling, which adds variance and nothing else.";
 
-    stumps: usize = 40, [1, 1000], "stumps",
+    stumps: usize = 20, [1, 1000], "stumps",
         "s: weak classifiers of gentle AdaBoost.";
-    feature_pool: usize = 300, [1, 10_000], "features",
+    feature_pool: usize = 150, [1, 10_000], "features",
         "Haar-like features that the stumps choose from, drawn at random from all masks, sizes and positions.";
     score_weight: f64 = 3.0, [0.0, 1000.0], "per unit of score",
         "alpha: weight of the classifier's score in the exponent of the likelihood.";
@@ -135,10 +135,43 @@ parameters! {
         "Whether the score is divided by sqrt(s) in the exponent.";
     hog_weight: f64 = 20.0, [0.0, 10_000.0], "per unit of squared distance",
         "gamma: weight of the squared HOG distance in the exponent of the likelihood.";
-    hog_ageing: f64 = 0.02, [0.0, 1.0], "share an update",
+    hog_ageing: f64 = 0.01, [0.0, 1.0], "share an update",
         "How far the HOG template moves towards the current one at each update; 0 keeps that of frame 1.";
     max_part_cells: usize = 4000, [16, 1_000_000], "cells",
         "Larger parts are averaged down to at most about this many pixels before features are computed.";
+
+    correlation_weight: f64 = 15.0, [0.0, 1000.0], "per unit of response",
+        "Weight of the correlation filter's response in the exponent of the likelihood; 0 leaves the filter out.";
+    correlation_region: Region = Region::Whole, "part, whole or the upper fraction in (0, 1]",
+        "What the filter looks for.";
+    correlation_margin: f64 = 1.2, [0.0, 3.0], "x",
+        "x";
+    correlation_cells: usize = 32, [8, 128], "cells",
+        "Cells along the filter's window.";
+    correlation_window: f64 = 4.0, [1.0, 10.0], "share",
+        "Side of the window.";
+    correlation_sigma: f64 = 0.0625, [0.001, 1.0], "share",
+        "Label.";
+    correlation_temporal: f64 = 30.0, [0.0, 1000.0], "share",
+        "mu.";
+    correlation_rho: f64 = 1.0, [0.0001, 1000.0], "x",
+        "rho.";
+    correlation_growth: f64 = 10.0, [1.0, 1000.0], "x",
+        "rho growth.";
+    correlation_rounds: usize = 2, [1, 20], "rounds",
+        "ADMM.";
+    correlation_colour: f64 = 1.0, [0.0, 100.0], "share",
+        "colour.";
+    correlation_support: f64 = 1.0, [0.1, 10.0], "share",
+        "support.";
+    correlation_interval: usize = 2, [1, 1000], "frames",
+        "learn.";
+    correlation_gate: f64 = 2.0, [-100.0, 100.0], "response",
+        "learn only above.";
+    peak_share: f64 = 0.5, [0.0, 0.99], "share",
+        "Particles drawn around the peak.";
+    peak_spread: f64 = 0.05, [0.001, 10.0], "share of sqrt(area)",
+        "sd around the peak.";
 
     first_targets: usize = 30, [1, 10_000], "samples",
         "N+: target samples of the first frame, always kept.";
@@ -148,7 +181,7 @@ parameters! {
         "Target samples added at each update.";
     backgrounds: usize = 20, [0, 10_000], "samples",
         "Background samples added at each update.";
-    recent_samples: usize = 400, [0, 100_000], "samples",
+    recent_samples: usize = 200, [0, 100_000], "samples",
         "How many of the latest samples are remembered besides those of the first frame.";
     target_jitter: f64 = 5.0, [0.0, 100.0], "pixels",
         "Target samples lie within this distance of the target along each axis.";

@@ -1,0 +1,200 @@
+//! Cells of a window, read from integral images: oriented gradients and mean colours.
+//!
+//! Steps:
+//! 1. the lines of a grid of `side` x `side` cells over the window, between the region's cells by interpolation,
+//! 2. each cell's gradient magnitude in 8 unsigned orientations, as a difference of four corners,
+//! 3. normalised by the energy of its four blocks of 2 x 2 cells and clipped at 0.2: 8 numbers and 4 energies
+//!    (Felzenszwalb, Girshick, McAllester, Ramanan 2010),
+//! 4. its mean luminance and two colour differences, without the window's mean,
+//! 5. gradients and colours each scaled to a mean square of 1, and all tapered towards the window's border.
+
+use crate::features::{hog::BINS, region::RegionIntegrals};
+
+use super::window::Window;
+
+const BLOCKS: usize = 4;
+/// Numbers a cell has for its gradients.
+pub const GRADIENTS: usize = BINS + BLOCKS;
+/// Numbers a cell has.
+pub const CHANNELS: usize = GRADIENTS + 3;
+const CLIP: f32 = 0.2;
+
+/// Cells of a window, a plane a channel.
+#[derive(Debug, Clone)]
+pub struct Grid {
+    side: usize,
+    taper: Vec<f32>,
+    columns: Vec<Line>,
+    rows: Vec<Line>,
+    corners: [Vec<[f64; BINS + 3]>; 2],
+    gradients: Vec<[f32; BINS]>,
+    energies: Vec<f32>,
+    planes: Vec<f32>,
+}
+
+/// A line of the grid between two of the region's.
+#[derive(Debug, Clone, Copy, Default)]
+struct Line {
+    before: usize,
+    after: usize,
+    share: f64,
+}
+
+impl Grid {
+    /// Scratch and planes for `side` x `side` cells.
+    pub fn new(side: usize) -> Self {
+        let hann = |i: usize| {
+            let phase = std::f32::consts::TAU * (i as f32 + 0.5) / side as f32;
+            0.5 * (1.0 - phase.cos())
+        };
+        Self {
+            side,
+            taper: (0..side * side).map(|i| hann(i / side) * hann(i % side)).collect(),
+            columns: vec![Line::default(); side + 1],
+            rows: vec![Line::default(); side + 1],
+            corners: [vec![[0.0; BINS + 3]; side + 1], vec![[0.0; BINS + 3]; side + 1]],
+            gradients: vec![[0.0; BINS]; side * side],
+            energies: vec![0.0; side * side],
+            planes: vec![0.0; CHANNELS * side * side],
+        }
+    }
+
+    /// The planes of all channels, one after another, each with its rows one after another.
+    pub fn planes(&self) -> &[f32] {
+        &self.planes
+    }
+
+    /// Describes a window of the frame (steps 1 to 5).
+    pub fn describe(&mut self, integrals: &RegionIntegrals, window: Window, colour: f32) {
+        let area = self.side * self.side;
+        self.set_lines(integrals, window);
+        self.collect(integrals);
+        self.normalise();
+        for plane in self.planes[GRADIENTS * area..].chunks_exact_mut(area) {
+            let mean = plane.iter().sum::<f32>() / area as f32;
+            plane.iter_mut().for_each(|value| *value -= mean);
+        }
+        scale_to(&mut self.planes[..GRADIENTS * area], 1.0);
+        scale_to(&mut self.planes[GRADIENTS * area..], colour);
+        for plane in self.planes.chunks_exact_mut(area) {
+            plane.iter_mut().zip(&self.taper).for_each(|(value, taper)| *value *= taper);
+        }
+    }
+
+    /// Step 1.
+    fn set_lines(&mut self, integrals: &RegionIntegrals, window: Window) {
+        let region = integrals.region();
+        let set = |lines: &mut [Line], centre: f64, from: i64, cells: usize| {
+            let last = lines.len() - 1;
+            for (i, line) in lines.iter_mut().enumerate() {
+                let at = centre + window.side * (i as f64 / last as f64 - 0.5);
+                let at = ((at - from as f64) / region.step as f64).clamp(0.0, cells as f64);
+                let before = (at as usize).min(cells);
+                *line = Line { before, after: (before + 1).min(cells), share: at - before as f64 };
+            }
+        };
+        set(&mut self.columns, window.x, region.x, region.width);
+        set(&mut self.rows, window.y, region.y, region.height);
+    }
+
+    /// Steps 2 and 4.
+    fn collect(&mut self, integrals: &RegionIntegrals) {
+        let (side, area) = (self.side, self.side * self.side);
+        self.load_corners(integrals, 0, 0);
+        for row in 0..side {
+            let (above, below) = (row % 2, (row + 1) % 2);
+            self.load_corners(integrals, row + 1, below);
+            let (above, below) = (&self.corners[above], &self.corners[below]);
+            let height = self.rows[row + 1].at() - self.rows[row].at();
+            for column in 0..side {
+                let width = self.columns[column + 1].at() - self.columns[column].at();
+                let per_area = if width * height > 1e-6 { 1.0 / (width * height) } else { 0.0 };
+                let cell = row * side + column;
+                let (a, b, c, d) = (&above[column], &above[column + 1], &below[column], &below[column + 1]);
+                let mean = |k: usize| ((d[k] - c[k] - b[k] + a[k]) * per_area) as f32;
+                for (bin, out) in self.gradients[cell].iter_mut().enumerate() {
+                    *out = mean(bin);
+                }
+                let [r, g, b] = [mean(BINS), mean(BINS + 1), mean(BINS + 2)];
+                self.planes[GRADIENTS * area + cell] = 0.25 * (r + 2.0 * g + b);
+                self.planes[(GRADIENTS + 1) * area + cell] = r - g;
+                self.planes[(GRADIENTS + 2) * area + cell] = 0.5 * (r + g) - b;
+            }
+        }
+    }
+
+    fn load_corners(&mut self, integrals: &RegionIntegrals, row: usize, slot: usize) {
+        let line = self.rows[row];
+        let stride = integrals.stride();
+        let (above, below) = (line.before * stride, line.after * stride);
+        let orientation = integrals.orientation();
+        let colour: [&[u32]; 3] = std::array::from_fn(|channel| integrals.colour(channel));
+        for (column, out) in self.columns.iter().zip(&mut self.corners[slot]) {
+            let at = [above + column.before, above + column.after, below + column.before, below + column.after];
+            let weights = [
+                (1.0 - line.share) * (1.0 - column.share),
+                (1.0 - line.share) * column.share,
+                line.share * (1.0 - column.share),
+                line.share * column.share,
+            ];
+            *out = [0.0; BINS + 3];
+            for (at, weight) in at.into_iter().zip(weights) {
+                for (out, value) in out.iter_mut().zip(&orientation[at]) {
+                    *out += weight * f64::from(*value);
+                }
+                for (out, plane) in out[BINS..].iter_mut().zip(colour) {
+                    *out += weight * f64::from(plane[at]);
+                }
+            }
+        }
+    }
+
+    /// Step 3.
+    fn normalise(&mut self) {
+        let (side, area) = (self.side, self.side * self.side);
+        for (energy, gradients) in self.energies.iter_mut().zip(&self.gradients) {
+            *energy = gradients.iter().map(|g| g * g).sum();
+        }
+        let energy = |row: usize, column: usize| self.energies[row.min(side - 1) * side + column.min(side - 1)];
+        for row in 0..side {
+            for column in 0..side {
+                let cell = row * side + column;
+                let rows = [row.saturating_sub(1), row];
+                let columns = [column.saturating_sub(1), column];
+                let mut factors = [0.0; BLOCKS];
+                for (k, factor) in factors.iter_mut().enumerate() {
+                    let (r, c) = (rows[k / 2], columns[k % 2]);
+                    let sum = energy(r, c) + energy(r + 1, c) + energy(r, c + 1) + energy(r + 1, c + 1);
+                    *factor = 1.0 / (sum + 1.0).sqrt();
+                }
+                let mut energies = [0.0; BLOCKS];
+                for (bin, gradient) in self.gradients[cell].iter().enumerate() {
+                    let mut sum = 0.0;
+                    for (factor, energy) in factors.iter().zip(&mut energies) {
+                        let value = (gradient * factor).min(CLIP);
+                        sum += value;
+                        *energy += value;
+                    }
+                    self.planes[bin * area + cell] = 0.5 * sum;
+                }
+                for (block, energy) in energies.into_iter().enumerate() {
+                    self.planes[(BINS + block) * area + cell] = 0.2357 * energy;
+                }
+            }
+        }
+    }
+}
+
+impl Line {
+    fn at(&self) -> f64 {
+        self.before as f64 + self.share
+    }
+}
+
+fn scale_to(values: &mut [f32], root_mean_square: f32) {
+    let mean_square = values.iter().map(|v| v * v).sum::<f32>() / values.len() as f32;
+    if mean_square > 0.0 {
+        let factor = root_mean_square / mean_square.sqrt();
+        values.iter_mut().for_each(|value| *value *= factor);
+    }
+}

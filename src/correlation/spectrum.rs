@@ -1,0 +1,101 @@
+//! The Fourier transform of real square images. A spectrum has the half of the columns that the rest follows from, one
+//! column after another, so that both passes read memory in order.
+
+use std::sync::Arc;
+
+use realfft::{ComplexToReal, RealFftPlanner, RealToComplex, num_complex::Complex32};
+use rustfft::{Fft, FftPlanner};
+
+/// Transforms images of one side.
+#[derive(Clone)]
+pub struct Fourier {
+    side: usize,
+    rows_forward: Arc<dyn RealToComplex<f32>>,
+    rows_inverse: Arc<dyn ComplexToReal<f32>>,
+    columns_forward: Arc<dyn Fft<f32>>,
+    columns_inverse: Arc<dyn Fft<f32>>,
+}
+
+/// What one transform at a time works on.
+#[derive(Debug, Clone)]
+pub struct Scratch {
+    row: Vec<f32>,
+    half_row: Vec<Complex32>,
+    columns: Vec<Complex32>,
+    inner: Vec<Complex32>,
+}
+
+impl Fourier {
+    /// Plans for `side` x `side` pixels; `side` must be even.
+    pub fn new(side: usize) -> Self {
+        let (mut real, mut complex) = (RealFftPlanner::new(), FftPlanner::new());
+        Self {
+            side,
+            rows_forward: real.plan_fft_forward(side),
+            rows_inverse: real.plan_fft_inverse(side),
+            columns_forward: complex.plan_fft_forward(side),
+            columns_inverse: complex.plan_fft_inverse(side),
+        }
+    }
+
+    /// Pixels along a side.
+    pub fn side(&self) -> usize {
+        self.side
+    }
+
+    /// Numbers in a spectrum.
+    pub fn spectrum_length(&self) -> usize {
+        self.side * self.columns()
+    }
+
+    /// Scratch for one thread.
+    pub fn scratch(&self) -> Scratch {
+        let inner = [
+            self.rows_forward.get_scratch_len(),
+            self.rows_inverse.get_scratch_len(),
+            self.columns_forward.get_inplace_scratch_len(),
+            self.columns_inverse.get_inplace_scratch_len(),
+        ];
+        Scratch {
+            row: vec![0.0; self.side],
+            half_row: vec![Complex32::default(); self.columns()],
+            columns: vec![Complex32::default(); self.spectrum_length()],
+            inner: vec![Complex32::default(); inner.into_iter().max().unwrap_or(0)],
+        }
+    }
+
+    fn columns(&self) -> usize {
+        self.side / 2 + 1
+    }
+
+    /// The spectrum of an image.
+    pub fn forward(&self, image: &[f32], spectrum: &mut [Complex32], scratch: &mut Scratch) {
+        let Scratch { row, half_row, inner, .. } = scratch;
+        for (y, pixels) in image.chunks_exact(self.side).enumerate() {
+            row.copy_from_slice(pixels);
+            // The lengths are those of the plan, so this cannot fail.
+            let _ = self.rows_forward.process_with_scratch(row, half_row, inner);
+            for (x, value) in half_row.iter().enumerate() {
+                spectrum[x * self.side + y] = *value;
+            }
+        }
+        self.columns_forward.process_with_scratch(spectrum, inner);
+    }
+
+    /// The image of a spectrum, divided by the number of pixels so that it undoes [`forward`](Self::forward).
+    pub fn inverse(&self, spectrum: &[Complex32], image: &mut [f32], scratch: &mut Scratch) {
+        let Scratch { half_row, columns, inner, .. } = scratch;
+        columns.copy_from_slice(spectrum);
+        self.columns_inverse.process_with_scratch(columns, inner);
+        let scale = 1.0 / (self.side * self.side) as f32;
+        for (y, pixels) in image.chunks_exact_mut(self.side).enumerate() {
+            for (x, value) in half_row.iter_mut().enumerate() {
+                *value = columns[x * self.side + y] * scale;
+            }
+            // Rounding leaves a trace where a real image's spectrum has none.
+            half_row[0].im = 0.0;
+            half_row[self.side / 2].im = 0.0;
+            let _ = self.rows_inverse.process_with_scratch(half_row, pixels, inner);
+        }
+    }
+}
