@@ -3,23 +3,38 @@
 use super::{appearance::Fit, estimate::Status};
 
 /// Below this confidence the target is not taken for seen.
-const TRACKING: f64 = 0.5;
+const TRACKING: f64 = 0.7;
 /// Below this confidence the target is taken for lost.
-const LOST: f64 = 0.2;
+const LOST: f64 = 0.35;
 
-/// Log-odds of an overlap above one half at score 0 and HOG distance 0; these three are the logistic regression over
-/// the frames of sixteen real sequences and three seeds, each sequence weighing the same: eight of people by their
-/// part, eight others by the whole box.
-const INTERCEPT: f64 = 1.9;
-/// What a mean stump of 1 (every stump certain of the target) adds.
-const PER_MEAN_STUMP: f64 = 3.8;
-/// What a unit of squared HOG distance takes away.
-const PER_HOG_DISTANCE: f64 = 3.8;
+/// Log-odds of an overlap above one half as a linear function of what is seen. The coefficients are those of logistic
+/// regressions over the frames of sixteen real sequences: eight of people by their part, eight others by the whole box.
+struct LogOdds {
+    intercept: f64,
+    /// What a mean stump of 1 (every stump certain of the target) adds.
+    per_mean_stump: f64,
+    /// What a unit of squared HOG distance takes away.
+    per_hog_distance: f64,
+    /// What a factor of e in the sharpness of the correlation filter's peak adds.
+    per_log_sharpness: f64,
+}
 
-/// The probability that the estimate overlaps the target by more than one half, in (0, 1).
-pub(super) fn confidence(fit: &Fit, stumps: usize) -> f64 {
+const WITHOUT_CORRELATION: LogOdds =
+    LogOdds { intercept: 1.9, per_mean_stump: 3.8, per_hog_distance: 3.8, per_log_sharpness: 0.0 };
+const WITH_CORRELATION: LogOdds =
+    LogOdds { intercept: -3.61, per_mean_stump: 1.04, per_hog_distance: 3.15, per_log_sharpness: 2.56 };
+
+/// The probability that the estimate overlaps the target by more than one half, in (0, 1). `sharpness` is that of the
+/// correlation filter's peak, if there is a filter.
+pub(super) fn confidence(fit: &Fit, stumps: usize, sharpness: Option<f32>) -> f64 {
     let mean_stump = f64::from(fit.score) / stumps as f64;
-    let log_odds = INTERCEPT + PER_MEAN_STUMP * mean_stump - PER_HOG_DISTANCE * f64::from(fit.hog_distance);
+    let (model, sharpness) = match sharpness {
+        Some(sharpness) => (WITH_CORRELATION, f64::from(sharpness).max(1.0)),
+        None => (WITHOUT_CORRELATION, 1.0),
+    };
+    let log_odds = model.intercept + model.per_mean_stump * mean_stump
+        - model.per_hog_distance * f64::from(fit.hog_distance)
+        + model.per_log_sharpness * sharpness.ln();
     1.0 / (1.0 + (-log_odds).exp())
 }
 
@@ -40,7 +55,7 @@ mod tests {
 
     #[test]
     fn a_better_fit_is_surer_and_the_words_follow() {
-        let of = |score, hog_distance| confidence(&Fit { score, hog_distance }, 40);
+        let of = |score, hog_distance| confidence(&Fit { score, hog_distance }, 40, None);
         assert!(of(20.0, 0.2) > of(0.0, 0.2) && of(20.0, 0.2) > of(20.0, 0.8));
         assert_eq!(status(of(20.0, 0.2)), Status::Tracking);
         assert_eq!(status(of(-10.0, 0.5)), Status::Uncertain);

@@ -170,7 +170,7 @@ impl InfoPart {
         }
         if let Some(locator) = &mut target.locator
             && target.frame.is_multiple_of(parameters.correlation_interval as u64)
-            && f64::from(fit.score) > parameters.correlation_gate
+            && target.estimate.confidence > parameters.update_confidence
         {
             let seen = parameters.correlation_region.part_from_full(target.estimate.box_in_frame);
             locator.learn(&self.integrals, &seen);
@@ -209,6 +209,7 @@ impl Target {
             trainer: GentleAdaBoost::new(BoostingOptions {
                 rounds: parameters.stumps,
                 balanced: parameters.balanced_labels,
+                turns: parameters.boosting_turns,
             }),
             classifier: StrongClassifier::default(),
             memory: SampleMemory::new(
@@ -304,7 +305,8 @@ impl Target {
         let (mean, covariance) = merge(&self.set_estimates);
         let part = box_of(&mean, self.aspect);
         let fit = self.appearance.fit(integrals, &integrals.to_region(part));
-        let confidence = confidence(&fit, parameters.stumps);
+        let sharpness = self.locator.as_ref().map(|locator| locator.peak.sharpness);
+        let confidence = confidence(&fit, parameters.stumps, sharpness);
         let full = parameters.region.full_from_part(part);
         self.estimate = Estimate::new(full, part, confidence, status(confidence));
         self.estimate.effective_sample_size =
@@ -317,6 +319,7 @@ impl Target {
     fn update_is_due(&self, parameters: &CheckedParameters, fit: &Fit) -> bool {
         self.frame.is_multiple_of(parameters.update_interval as u64)
             && f64::from(fit.score) > parameters.update_score
+            && self.estimate.confidence > parameters.update_confidence
     }
 
     fn age_template(&mut self, rate: f32, integrals: &RegionIntegrals) {

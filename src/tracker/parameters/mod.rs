@@ -129,7 +129,9 @@ parameters! {
         "s: weak classifiers of gentle AdaBoost.";
     feature_pool: usize = 150, [1, 10_000], "features",
         "Haar-like features that the stumps choose from, drawn at random from all masks, sizes and positions.";
-    score_weight: f64 = 3.0, [0.0, 1000.0], "per unit of score",
+    boosting_turns: usize = 5, [1, 100], "rounds",
+        "Each round of training searches this fraction of the features, in turns; 1 searches all of them.";
+    score_weight: f64 = 1.5, [0.0, 1000.0], "per unit of score",
         "alpha: weight of the classifier's score in the exponent of the likelihood.";
     score_per_root_stump: bool = true, "true or false",
         "Whether the score is divided by sqrt(s) in the exponent.";
@@ -140,11 +142,11 @@ parameters! {
     max_part_cells: usize = 4000, [16, 1_000_000], "cells",
         "Larger parts are averaged down to at most about this many pixels before features are computed.";
 
-    correlation_weight: f64 = 15.0, [0.0, 1000.0], "per unit of response",
+    correlation_weight: f64 = 25.0, [0.0, 1000.0], "per unit of response",
         "Weight of the correlation filter's response in the exponent of the likelihood; 0 leaves the filter out.";
     correlation_region: Region = Region::Whole, "part, whole or the upper fraction in (0, 1]",
         "What the filter looks for.";
-    correlation_margin: f64 = 1.2, [0.0, 3.0], "x",
+    correlation_margin: f64 = 1.0, [0.0, 3.0], "x",
         "x";
     correlation_cells: usize = 32, [8, 128], "cells",
         "Cells along the filter's window.";
@@ -166,8 +168,6 @@ parameters! {
         "support.";
     correlation_interval: usize = 2, [1, 1000], "frames",
         "learn.";
-    correlation_gate: f64 = 2.0, [-100.0, 100.0], "response",
-        "learn only above.";
     peak_share: f64 = 0.5, [0.0, 0.99], "share",
         "Particles drawn around the peak.";
     peak_spread: f64 = 0.05, [0.001, 10.0], "share of sqrt(area)",
@@ -181,7 +181,7 @@ parameters! {
         "Target samples added at each update.";
     backgrounds: usize = 20, [0, 10_000], "samples",
         "Background samples added at each update.";
-    recent_samples: usize = 200, [0, 100_000], "samples",
+    recent_samples: usize = 120, [0, 100_000], "samples",
         "How many of the latest samples are remembered besides those of the first frame.";
     target_jitter: f64 = 5.0, [0.0, 100.0], "pixels",
         "Target samples lie within this distance of the target along each axis.";
@@ -197,6 +197,8 @@ parameters! {
         "The classifier is updated every so many frames.";
     update_score: f64 = 2.0, [-1000.0, 1000.0], "score",
         "And only if the classifier's score of the estimate is above this.";
+    update_confidence: f64 = 0.5, [0.0, 1.0], "probability",
+        "Nothing is learnt from a frame whose confidence is below this.";
 }
 
 impl Parameters {
