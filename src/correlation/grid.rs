@@ -130,7 +130,8 @@ impl Grid {
         let orientation = integrals.orientation();
         let colour: [&[u32]; 3] = std::array::from_fn(|channel| integrals.colour(channel));
         for (column, out) in self.columns.iter().zip(&mut self.corners[slot]) {
-            let at = [above + column.before, above + column.after, below + column.before, below + column.after];
+            let at =
+                [above + column.before, above + column.after, below + column.before, below + column.after];
             let weights = [
                 (1.0 - line.share) * (1.0 - column.share),
                 (1.0 - line.share) * column.share,
@@ -155,7 +156,8 @@ impl Grid {
         for (energy, gradients) in self.energies.iter_mut().zip(&self.gradients) {
             *energy = gradients.iter().map(|g| g * g).sum();
         }
-        let energy = |row: usize, column: usize| self.energies[row.min(side - 1) * side + column.min(side - 1)];
+        let energy =
+            |row: usize, column: usize| self.energies[row.min(side - 1) * side + column.min(side - 1)];
         for row in 0..side {
             for column in 0..side {
                 let cell = row * side + column;
@@ -196,5 +198,89 @@ fn scale_to(values: &mut [f32], root_mean_square: f32) {
     if mean_square > 0.0 {
         let factor = root_mean_square / mean_square.sqrt();
         values.iter_mut().for_each(|value| *value *= factor);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        features::{reference, region::SearchRegion},
+        frame::{Frame, PixelFormat},
+    };
+
+    const SIDE: usize = 8;
+
+    fn integrals(frame: &Frame) -> RegionIntegrals {
+        let mut integrals = RegionIntegrals::default();
+        let (width, height) = (frame.view().width(), frame.view().height());
+        integrals.compute(&frame.view(), SearchRegion { x: 0, y: 0, width, height, step: 1 });
+        integrals
+    }
+
+    #[test]
+    fn on_the_pixel_grid_a_cells_gradients_and_colours_are_the_naive_means() {
+        let frame = reference::textured_frame(40, 40, PixelFormat::Rgb);
+        let mut grid = Grid::new(SIDE);
+        let integrals = integrals(&frame);
+        grid.set_lines(&integrals, Window { x: 20.0, y: 18.0, side: 32.0 });
+        grid.collect(&integrals);
+        let naive = reference::gradient_bins(&frame.view(), integrals.region());
+        for (cell, found) in grid.gradients.iter().enumerate() {
+            let (left, top) = (4 + cell % SIDE * 4, 2 + cell / SIDE * 4);
+            for (bin, found) in found.iter().enumerate() {
+                let sum: f32 = (0..16).map(|i| naive[top + i / 4][left + i % 4][bin]).sum();
+                // Rounding to whole units: at most 1 a pixel.
+                assert!((found - sum / 16.0).abs() < 1.0, "{cell} {bin}: {found} {}", sum / 16.0);
+            }
+            let mean = |channel: usize| {
+                let pixel =
+                    |i: usize| reference::sample(&frame.view(), (left + i % 4) as i64, (top + i / 4) as i64);
+                (0..16).map(|i| f32::from(pixel(i)[channel])).sum::<f32>() / 16.0
+            };
+            let red_green = grid.planes[(GRADIENTS + 1) * SIDE * SIDE + cell];
+            assert!((red_green - (mean(0) - mean(1))).abs() < 1e-3);
+        }
+    }
+
+    #[test]
+    fn the_same_texture_moved_by_less_than_a_cell_moves_between_cells() {
+        // A step edge at column 20: the cell that holds it has all of its gradient wherever the cell's border lies.
+        let pixels: Vec<u8> = (0..40 * 40).map(|i| if i % 40 < 20 { 20 } else { 220 }).collect();
+        let integrals = integrals(&Frame::new(pixels, 40, 40, PixelFormat::Gray).unwrap());
+        let mut grid = Grid::new(SIDE);
+        let total = |grid: &Grid| grid.gradients[..SIDE].iter().flatten().sum::<f32>();
+        grid.set_lines(&integrals, Window { x: 20.0, y: 20.0, side: 32.0 });
+        grid.collect(&integrals);
+        let whole = total(&grid);
+        grid.set_lines(&integrals, Window { x: 21.3, y: 20.0, side: 32.0 });
+        grid.collect(&integrals);
+        assert!((total(&grid) - whole).abs() < 1e-2 * whole);
+    }
+
+    #[test]
+    fn what_lies_beyond_the_region_is_nothing() {
+        let frame = reference::textured_frame(40, 40, PixelFormat::Rgb);
+        let integrals = integrals(&frame);
+        let mut grid = Grid::new(SIDE);
+        grid.describe(&integrals, Window { x: 500.0, y: -300.0, side: 32.0 }, 1.0);
+        assert!(grid.planes().iter().all(|value| *value == 0.0));
+        grid.describe(&integrals, Window { x: 35.0, y: 20.0, side: 60.0 }, 1.0);
+        assert!(grid.planes().iter().all(|value| value.is_finite()));
+        assert!(grid.planes().iter().any(|value| *value != 0.0));
+    }
+
+    #[test]
+    fn gradients_and_colours_have_the_share_that_is_asked_for() {
+        let frame = reference::textured_frame(40, 40, PixelFormat::Rgb);
+        let energy = |colour: f32| {
+            let mut grid = Grid::new(SIDE);
+            grid.describe(&integrals(&frame), Window { x: 20.0, y: 20.0, side: 30.0 }, colour);
+            let (gradients, colours) = grid.planes().split_at(GRADIENTS * SIDE * SIDE);
+            let of = |planes: &[f32]| planes.iter().map(|v| v * v).sum::<f32>();
+            (of(gradients), of(colours))
+        };
+        let ((gradients, once), (same, twice)) = (energy(1.0), energy(2.0));
+        assert!((gradients - same).abs() < 1e-3 * gradients && (twice - 4.0 * once).abs() < 1e-3 * twice);
     }
 }

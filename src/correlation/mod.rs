@@ -1,8 +1,8 @@
 //! Correlation filter: where in a window around a target its appearance lies.
 //!
-//! A window of the frame is resampled to a fixed grid, described by cells of oriented gradients and colour
-//! ([`cells`]), and correlated with a filter that is learnt in the Fourier domain ([`filter`]). The module knows no
-//! tracker; its answer is a [`response::Response`] over the window.
+//! A window of the frame is described by a grid of cells that are read from integral images ([`grid`]), and correlated with
+//! a filter that is learnt in the Fourier domain ([`filter`]). The module knows no tracker; its answer is a
+//! [`response::Response`] over the window.
 
 pub mod filter;
 pub mod grid;

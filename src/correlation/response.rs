@@ -55,10 +55,7 @@ impl Response {
         let cell = self.cell();
         let (u, v) = ((x - self.window.x) / cell, (y - self.window.y) / cell);
         let half = self.side as f64 / 2.0 - 1.0;
-        if u.abs() > half || v.abs() > half {
-            return 0.0;
-        }
-        self.cubic(u, v)
+        if u.abs() <= half && v.abs() <= half { self.cubic(u, v) } else { 0.0 }
     }
 
     fn wrapped(&self, column: i64, row: i64) -> f32 {
@@ -81,9 +78,10 @@ impl Response {
 
     /// The highest response, between the cells by a parabola through its neighbours.
     pub fn peak(&self) -> Peak {
-        let (best, value) = self.values.iter().enumerate().fold((0, f32::NEG_INFINITY), |best, (i, &value)| {
-            if value > best.1 { (i, value) } else { best }
-        });
+        let (best, value) =
+            self.values.iter().enumerate().fold((0, f32::NEG_INFINITY), |best, (i, &value)| {
+                if value > best.1 { (i, value) } else { best }
+            });
         let signed = |i: usize| if i >= self.side / 2 { i as i64 - self.side as i64 } else { i as i64 };
         let (column, row) = (signed(best % self.side), signed(best / self.side));
         let offset = |before: f32, after: f32| {
@@ -128,4 +126,45 @@ fn cubic_weights(t: f32) -> [f32; 4] {
         0.5 * (-3.0 * t3 + 4.0 * t2 + t),
         0.5 * (t3 - t2),
     ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SIDE: usize = 8;
+
+    /// A response over 16 x 16 pixels around (50, 40), cells of two pixels, from a function of the shift in cells.
+    fn response(value: impl Fn(f64, f64) -> f64) -> Response {
+        let mut response = Response::new(SIDE);
+        let signed = |i: usize| if i >= SIDE / 2 { i as f64 - SIDE as f64 } else { i as f64 };
+        let values: Vec<f32> =
+            (0..SIDE * SIDE).map(|i| value(signed(i % SIDE), signed(i / SIDE)) as f32).collect();
+        response.values_mut(Window { x: 50.0, y: 40.0, side: 16.0 }).copy_from_slice(&values);
+        response
+    }
+
+    #[test]
+    fn a_peak_between_cells_is_found() {
+        let peak = response(|x, y| 1.0 - 0.1 * ((x - 1.25).powi(2) + (y + 2.0).powi(2))).peak();
+        assert!((peak.x - 52.5).abs() < 1e-4 && (peak.y - 36.0).abs() < 1e-4, "{peak:?}");
+    }
+
+    #[test]
+    fn between_cells_a_plane_stays_a_plane_and_outside_nothing_is_known() {
+        let plane = response(|x, y| 0.5 + 0.25 * x - 0.125 * y);
+        for (x, y) in [(50.0, 40.0), (51.0, 40.5), (47.3, 42.9)] {
+            let expected = 0.5 + 0.25 * (x - 50.0) / 2.0 - 0.125 * (y - 40.0) / 2.0;
+            assert!((f64::from(plane.at(x, y)) - expected).abs() < 1e-5, "{x} {y}");
+        }
+        assert_eq!(plane.at(50.0, 60.0), 0.0);
+        assert_eq!(plane.at(f64::NAN, 40.0), 0.0);
+    }
+
+    #[test]
+    fn a_lone_peak_is_sharper_than_one_of_two() {
+        let lone = response(|x, y| if (x, y) == (0.0, 0.0) { 1.0 } else { 0.01 * x });
+        let two = response(|x, y| if (x, y) == (0.0, 0.0) || (x, y) == (-4.0, 3.0) { 1.0 } else { 0.01 * x });
+        assert!(lone.peak().sharpness > 3.0 * two.peak().sharpness);
+    }
 }

@@ -99,3 +99,33 @@ impl Fourier {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_spectrum_equals_the_naive_sum_and_goes_back_to_its_image() {
+        let side = 6;
+        let image: Vec<f32> = (0..side * side).map(|i| ((i * i) % 11) as f32 - 4.0).collect();
+        let fourier = Fourier::new(side);
+        let mut scratch = fourier.scratch();
+        let mut spectrum = vec![Complex32::default(); fourier.spectrum_length()];
+        fourier.forward(&image, &mut spectrum, &mut scratch);
+        for u in 0..=side / 2 {
+            for v in 0..side {
+                let naive: Complex32 = (0..side * side)
+                    .map(|i| {
+                        let phase =
+                            -std::f32::consts::TAU * (u * (i % side) + v * (i / side)) as f32 / side as f32;
+                        Complex32::from_polar(image[i], phase)
+                    })
+                    .sum();
+                assert!((spectrum[u * side + v] - naive).norm() < 1e-3, "{u} {v}");
+            }
+        }
+        let mut back = vec![0.0; side * side];
+        fourier.inverse(&spectrum, &mut back, &mut scratch);
+        assert!(image.iter().zip(&back).all(|(a, b)| (a - b).abs() < 1e-4));
+    }
+}

@@ -300,7 +300,11 @@ impl GradientRows {
         let width = middle.len();
         let mut put = |at: usize, dx: f32, dy: f32| (lower[at], upper[at], bin[at]) = split_gradient(dx, dy);
         put(0, middle[1.min(width - 1)] - middle[0], below[0] - above[0]);
-        put(width - 1, middle[width - 1] - middle[width.saturating_sub(2)], below[width - 1] - above[width - 1]);
+        put(
+            width - 1,
+            middle[width - 1] - middle[width.saturating_sub(2)],
+            below[width - 1] - above[width - 1],
+        );
         if width < 3 {
             return;
         }
@@ -321,7 +325,8 @@ impl GradientRows {
         below[0] = sums;
         let gradients = self.lower.iter().zip(&self.upper).zip(&self.bin);
         for ((out, up), ((&lower, &upper), &bin)) in below[1..].iter_mut().zip(above).zip(gradients) {
-            let (lower_mask, upper_mask) = (&BIN_MASKS[bin as usize % BINS], &BIN_MASKS[bin as usize % BINS + 1]);
+            let (lower_mask, upper_mask) =
+                (&BIN_MASKS[bin as usize % BINS], &BIN_MASKS[bin as usize % BINS + 1]);
             for b in 0..BINS {
                 sums[b] += (lower & lower_mask[b]) + (upper & upper_mask[b]);
                 out[b] = up[b] + sums[b];

@@ -4,7 +4,7 @@
 //! 1. the hypothesis in the search region's cells (features are evaluated scaled instead of resizing a crop),
 //! 2. HOG2 and the Haar-like features that the classifier reads,
 //! 3. conf = F(Haar2) (Algorithm 3),
-//! 4. likelihood = exp(alpha * conf - gamma * ||HOG1 - HOG2||^2).
+//! 4. likelihood = exp(alpha * conf - gamma * ||HOG1 - HOG2||^2 + beta * the correlation filter's response).
 
 use crate::{
     bayes::Observation,
@@ -18,6 +18,7 @@ use crate::{
 };
 
 use super::{
+    locator::Locator,
     motion::{PartState, box_of},
     parameters::Parameters,
 };
@@ -89,20 +90,17 @@ pub(super) struct FrameObservation<'a> {
     pub appearance: &'a Appearance,
     /// h / w of the part.
     pub aspect: f64,
-    pub locator: Option<(&'a super::locator::Locator, f64, crate::geometry::Region, crate::geometry::Region)>,
+    /// The correlation filter that has looked at the frame, and the weight of its response.
+    pub locator: Option<(&'a Locator, f64)>,
 }
 
 impl Observation<3> for FrameObservation<'_> {
     fn log_likelihood(&self, state: &PartState) -> f64 {
-        let hypothesis = self.integrals.to_region(box_of(state, self.aspect));
-        let fit = self.appearance.fit(self.integrals, &hypothesis);
-        let own = f64::from(self.appearance.score_weight * fit.score - self.appearance.hog_weight * fit.hog_distance);
-        match self.locator {
-            Some((locator, weight, region, seen)) => {
-                let full = region.full_from_part(box_of(state, self.aspect));
-                own + weight * f64::from(locator.at(&seen.part_from_full(full)))
-            }
-            None => own,
-        }
+        let part = box_of(state, self.aspect);
+        let fit = self.appearance.fit(self.integrals, &self.integrals.to_region(part));
+        let of_fit = self.appearance.score_weight * fit.score - self.appearance.hog_weight * fit.hog_distance;
+        let of_response =
+            self.locator.map_or(0.0, |(locator, weight)| weight * f64::from(locator.response(part)));
+        f64::from(of_fit) + of_response
     }
 }

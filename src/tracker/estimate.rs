@@ -46,6 +46,21 @@ pub struct Estimate {
     pub effective_sample_size: f64,
     /// Covariance of the part's (x, y, w), square pixels, row by row; zero where unknown.
     pub covariance: [[f64; 3]; 3],
+    /// What the confidence follows from; `None` in the first frame and for trackers that do not tell.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub evidence: Option<Evidence>,
+}
+
+/// What InfoPart's confidence in an estimate follows from.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Evidence {
+    /// The classifier's score over its stumps, in [-1, 1]: 1 if every stump is certain of the target.
+    pub mean_stump: f64,
+    /// Squared distance of the part's HOG from the template's, in [0, 2].
+    pub hog_distance: f64,
+    /// How far the correlation filter's peak stands above the rest of its window, in standard deviations of the rest; `None`
+    /// without the filter.
+    pub peak_sharpness: Option<f64>,
 }
 
 impl Estimate {
@@ -58,6 +73,7 @@ impl Estimate {
             status,
             effective_sample_size: 0.0,
             covariance: [[0.0; 3]; 3],
+            evidence: None,
         }
     }
 }

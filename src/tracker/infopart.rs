@@ -2,12 +2,18 @@
 //!
 //! Steps:
 //! 1. in the first frame, set up n particle sets on the part of the box that changes least,
-//! 2. sample the part and its surroundings (Algorithm 5) and train the classifier F (Algorithm 4),
+//! 2. sample the part and its surroundings (Algorithm 5), train the classifier F (Algorithm 4), and let the correlation
+//!    filter learn,
 //! 3. in each later frame:
-//!    a. move the particles, compute integral images of the region they cover, weigh and resample them (Algorithm 1),
+//!    a. compute integral images around the target and correlate; move the particles by the walk or to where the filter peaks,
+//!       weigh and resample them (Algorithm 1),
 //!    b. estimate the part from the sets and recover the whole box from it,
 //!    c. judge the estimate,
-//!    d. if it is due and the estimate is trusted, sample the new part and retrain F.
+//!    d. if it is due and the estimate is trusted, sample the new part and retrain F,
+//!    e. likewise let the filter learn.
+//!
+//! The correlation filter is the step that the paper names as its next; without it (weight 0), the integral images are
+//! of the region that the particles cover, and all else is as printed.
 
 use std::sync::Arc;
 
@@ -28,10 +34,12 @@ use super::{
     TrackError, Tracker,
     appearance::{Appearance, Fit, FrameObservation},
     confidence::{confidence, status},
-    estimate::{BoxWarning, Estimate, StageTime, Status, WeightedBox},
+    estimate::{BoxWarning, Estimate, Evidence, StageTime, Status, WeightedBox},
     first_box,
+    locator::Locator,
     motion::{Limits, PartState, PartWalk, box_of, state_of},
     parameters::CheckedParameters,
+    proposal::PeakProposal,
     sampling::Sampler,
     stopwatch::Stopwatch,
     streams::{Use, stream},
@@ -68,7 +76,7 @@ struct Target {
     estimate: Estimate,
     sample: Vec<f32>,
     set_estimates: Vec<ParticleEstimate<3>>,
-    locator: Option<super::locator::Locator>,
+    locator: Option<Locator>,
 }
 
 impl InfoPart {
@@ -105,17 +113,19 @@ impl InfoPart {
         self.stopwatch.start();
         let parameters = &self.parameters;
         let part = parameters.region.part_from_full(box_in_frame);
+        let mut locator =
+            (parameters.correlation_weight > 0.0).then(|| Locator::new(parameters, box_in_frame));
         let field = Sampler::new(parameters).field(&part);
-        self.integrals.compute(&frame, search_region(field, &part, parameters.max_part_cells));
+        let extent =
+            locator.as_ref().map_or(field, |locator| holding(&field, &locator.window(part).to_rect()));
+        self.integrals.compute(&frame, search_region(extent, &part, parameters.max_part_cells));
         self.stopwatch.lap("integral images");
-        let mut target = Target::new(parameters, &frame, &self.integrals, box_in_frame, part);
-        if let Some(locator) = &mut target.locator {
-            let seen = parameters.correlation_region.part_from_full(box_in_frame);
-            let window = locator.window(&seen);
-            let extent = square(window, parameters.correlation_margin);
-            self.integrals.compute(&frame, search_region(extent, &part, parameters.max_part_cells));
-            locator.learn(&self.integrals, &seen);
+        if let Some(locator) = &mut locator {
+            locator.learn(&self.integrals, part);
+            self.stopwatch.lap("correlation learning");
         }
+        let mut target = Target::new(parameters, &frame, &self.integrals, box_in_frame, part);
+        target.locator = locator;
         target.sample(parameters, &self.integrals, (parameters.first_targets, parameters.first_backgrounds));
         self.stopwatch.lap("samples");
         target.train();
@@ -130,36 +140,24 @@ impl InfoPart {
         let parameters = &self.parameters;
         self.stopwatch.start();
         target.frame += 1;
-        let seen = parameters.correlation_region.part_from_full(target.estimate.box_in_frame);
         let part = target.estimate.part_in_frame;
+        let region = |extent| search_region(extent, &part, parameters.max_part_cells);
         if let Some(locator) = &mut target.locator {
-            let extent = square(locator.window(&seen), parameters.correlation_margin);
-            self.integrals.compute(&frame, search_region(extent, &part, parameters.max_part_cells));
+            let extent = holding(&locator.window(part).to_rect(), &around(&part));
+            self.integrals.compute(&frame, region(extent));
             self.stopwatch.lap("integral images");
-            locator.look(&self.integrals, &seen);
+            locator.look(&self.integrals, part);
             self.stopwatch.lap("correlation");
         }
         target.predict(parameters);
         self.stopwatch.lap("prediction");
         if target.locator.is_none() {
-            self.integrals.compute(&frame, search_region(target.extent(), &part, parameters.max_part_cells));
+            self.integrals.compute(&frame, region(target.extent()));
             self.stopwatch.lap("integral images");
         }
         target.correct(parameters, &self.integrals);
         self.stopwatch.lap("likelihood");
         let fit = target.judge(parameters, &self.integrals);
-        if std::env::var_os("INFODBG").is_some() {
-            let (at, peak) = target.locator.as_ref().map_or((0.0, 0.0), |l| {
-                (l.at(&parameters.correlation_region.part_from_full(target.estimate.box_in_frame)), l.peak.value)
-            });
-            let sharp = target.locator.as_ref().map_or(0.0, |l| l.peak.sharpness);
-            let b = target.estimate.box_in_frame;
-            eprintln!(
-                "DBG {} {at:.4} {peak:.4} {sharp:.3} {:.4} {:.4} {:.2} {:.4} {:.2} {:.2} {:.2} {:.2}",
-                target.frame + 1, fit.score, fit.hog_distance, target.estimate.effective_sample_size,
-                target.set_estimates[0].log_evidence, b.x, b.y, b.w, b.h
-            );
-        }
         self.stopwatch.lap("estimate");
         if target.update_is_due(parameters, &fit) {
             target.age_template(parameters.hog_ageing as f32, &self.integrals);
@@ -168,12 +166,10 @@ impl InfoPart {
             target.train();
             self.stopwatch.lap("training");
         }
-        if let Some(locator) = &mut target.locator
-            && target.frame.is_multiple_of(parameters.correlation_interval as u64)
-            && target.estimate.confidence > parameters.update_confidence
+        if target.learning_is_due(parameters)
+            && let Some(locator) = &mut target.locator
         {
-            let seen = parameters.correlation_region.part_from_full(target.estimate.box_in_frame);
-            locator.learn(&self.integrals, &seen);
+            locator.learn(&self.integrals, target.estimate.part_in_frame);
             self.stopwatch.lap("correlation learning");
         }
         Ok(target.estimate.clone())
@@ -220,10 +216,7 @@ impl Target {
             estimate,
             sample: Vec::with_capacity(parameters.feature_pool),
             set_estimates: Vec::with_capacity(parameters.particle_sets),
-            locator: (parameters.correlation_weight > 0.0).then(|| {
-                let seen = parameters.correlation_region.part_from_full(box_in_frame);
-                super::locator::Locator::new(parameters, &seen)
-            }),
+            locator: None,
         }
     }
 
@@ -253,13 +246,9 @@ impl Target {
             let mut rng = stream(parameters.seed, self.frame, Use::Particles(set));
             match &self.locator {
                 Some(locator) if parameters.peak_share > 0.0 => {
-                    let full = parameters.region.full_from_part(part);
-                    let seen = parameters.correlation_region.part_from_full(full);
-                    let (sx, sy) = seen.centre();
-                    let (px, py) = part.centre();
-                    let proposal = super::locator::PeakProposal {
+                    let proposal = PeakProposal {
                         walk,
-                        peak: (locator.peak.x + px - sx, locator.peak.y + py - sy),
+                        peak: locator.peak_of_part(part),
                         spread: parameters.peak_spread * part.area().sqrt(),
                         share: parameters.peak_share,
                     };
@@ -288,10 +277,9 @@ impl Target {
     /// Step 3a, correction, and 3b: the sets' means weighted by their mean likelihoods.
     fn correct(&mut self, parameters: &CheckedParameters, integrals: &RegionIntegrals) {
         let seed = parameters.seed;
-        let locator = self.locator.as_ref().map(|locator| {
-            (locator, parameters.correlation_weight, parameters.region, parameters.correlation_region)
-        });
-        let observation = FrameObservation { integrals, appearance: &self.appearance, aspect: self.aspect, locator };
+        let locator = self.locator.as_ref().map(|locator| (locator, parameters.correlation_weight));
+        let observation =
+            FrameObservation { integrals, appearance: &self.appearance, aspect: self.aspect, locator };
         self.set_estimates.clear();
         for (set, particles) in self.sets.iter_mut().enumerate() {
             // Past the prediction's draws: the frame's second half of the stream numbers.
@@ -305,13 +293,18 @@ impl Target {
         let (mean, covariance) = merge(&self.set_estimates);
         let part = box_of(&mean, self.aspect);
         let fit = self.appearance.fit(integrals, &integrals.to_region(part));
-        let sharpness = self.locator.as_ref().map(|locator| locator.peak.sharpness);
-        let confidence = confidence(&fit, parameters.stumps, sharpness);
+        let evidence = Evidence {
+            mean_stump: f64::from(fit.score) / parameters.stumps as f64,
+            hog_distance: f64::from(fit.hog_distance),
+            peak_sharpness: self.locator.as_ref().map(Locator::sharpness),
+        };
+        let confidence = confidence(&evidence);
         let full = parameters.region.full_from_part(part);
         self.estimate = Estimate::new(full, part, confidence, status(confidence));
         self.estimate.effective_sample_size =
             self.set_estimates.iter().map(|set| set.effective_sample_size).sum();
         self.estimate.covariance = covariance;
+        self.estimate.evidence = Some(evidence);
         fit
     }
 
@@ -319,6 +312,12 @@ impl Target {
     fn update_is_due(&self, parameters: &CheckedParameters, fit: &Fit) -> bool {
         self.frame.is_multiple_of(parameters.update_interval as u64)
             && f64::from(fit.score) > parameters.update_score
+            && self.estimate.confidence > parameters.update_confidence
+    }
+
+    /// Step 3e.
+    fn learning_is_due(&self, parameters: &CheckedParameters) -> bool {
+        self.frame.is_multiple_of(parameters.correlation_interval as u64)
             && self.estimate.confidence > parameters.update_confidence
     }
 
@@ -379,9 +378,15 @@ fn particle_set(parameters: &CheckedParameters, part: &Rect, set: usize) -> Part
     ParticleFilter::new(states, options)
 }
 
-fn square(window: crate::correlation::window::Window, margin: f64) -> Rect {
-    let side = window.side * margin;
-    Rect::new(window.x - side / 2.0, window.y - side / 2.0, side, side)
+/// The smallest box that holds both.
+fn holding(a: &Rect, b: &Rect) -> Rect {
+    let (x, y) = (a.x.min(b.x), a.y.min(b.y));
+    Rect::new(x, y, a.right().max(b.right()) - x, a.bottom().max(b.bottom()) - y)
+}
+
+/// A box of twice the width and height around a part: what the particles need at least, however long and thin it is.
+fn around(part: &Rect) -> Rect {
+    Rect::new(part.x - part.w / 2.0, part.y - part.h / 2.0, 2.0 * part.w, 2.0 * part.h)
 }
 
 /// The cells that hold `extent`, coarse enough that the part has at most `max_part_cells`.

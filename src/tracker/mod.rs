@@ -8,6 +8,7 @@ mod infopart;
 mod locator;
 mod motion;
 mod parameters;
+mod proposal;
 mod sampling;
 mod stopwatch;
 mod streams;
@@ -19,7 +20,7 @@ use crate::{
     geometry::Rect,
 };
 
-pub use estimate::{BoxWarning, Estimate, StageTime, Status, WeightedBox};
+pub use estimate::{BoxWarning, Estimate, Evidence, StageTime, Status, WeightedBox};
 pub use infopart::InfoPart;
 pub use parameters::{CheckedParameters, ParameterError, Parameters, SCHEMA_VERSION};
 

@@ -46,7 +46,8 @@ impl Limits {
         }
     }
 
-    fn confine(&self, state: PartState, aspect: f64) -> PartState {
+    /// The nearest state within the limits.
+    pub fn confine(&self, state: PartState, aspect: f64) -> PartState {
         let w = state[2].clamp(self.narrowest, self.widest);
         let (half_w, half_h) = (w / 2.0, aspect * w / 2.0);
         PartState::new(
@@ -71,10 +72,6 @@ pub(super) struct PartWalk {
 }
 
 impl PartWalk {
-    pub fn confine(&self, state: PartState) -> PartState {
-        self.limits.confine(state, self.aspect)
-    }
-
     /// How far a step of `dw` in width moves the corner.
     fn corner_shift(&self, dw: f64) -> (f64, f64) {
         if self.about_centre { (-dw / 2.0, -self.aspect * dw / 2.0) } else { (0.0, 0.0) }

@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::{Destination, FrameEvent, Observer, OutputError};
 use crate::{
     geometry::{Origin, Rect},
-    tracker::Status,
+    tracker::{Evidence, Status},
 };
 
 mod csv;
@@ -135,6 +135,8 @@ struct Row {
     status: Status,
     effective_sample_size: f64,
     time_s: Option<f64>,
+    #[serde(flatten)]
+    evidence: Option<Evidence>,
     #[serde(skip_serializing_if = "Option::is_none")]
     update_ms: Option<f64>,
 }
@@ -157,6 +159,7 @@ impl Row {
             status: event.estimate.status,
             effective_sample_size: event.estimate.effective_sample_size,
             time_s: event.time.map(|time| time.as_secs_f64()),
+            evidence: event.estimate.evidence,
             update_ms: options.timing.then_some(event.tracking_time.as_secs_f64() * 1e3),
         }
     }

@@ -142,36 +142,30 @@ parameters! {
     max_part_cells: usize = 4000, [16, 1_000_000], "cells",
         "Larger parts are averaged down to at most about this many pixels before features are computed.";
 
-    correlation_weight: f64 = 25.0, [0.0, 1000.0], "per unit of response",
-        "Weight of the correlation filter's response in the exponent of the likelihood; 0 leaves the filter out.";
+    correlation_weight: f64 = 40.0, [0.0, 1000.0], "per unit of response",
+        "beta: weight of the correlation filter's response in the exponent of the likelihood; 0 leaves the filter out.";
     correlation_region: Region = Region::Whole, "part, whole or the upper fraction in (0, 1]",
-        "What the filter looks for.";
-    correlation_margin: f64 = 1.0, [0.0, 3.0], "x",
-        "x";
+        "What the filter looks at of the box, from its top edge down, whatever is tracked.";
+    correlation_window: f64 = 4.0, [1.0, 10.0], "sqrt(w h) of what the filter looks at",
+        "Side of the square window that is searched.";
     correlation_cells: usize = 32, [8, 128], "cells",
-        "Cells along the filter's window.";
-    correlation_window: f64 = 4.0, [1.0, 10.0], "share",
-        "Side of the window.";
-    correlation_sigma: f64 = 0.0625, [0.001, 1.0], "share",
-        "Label.";
-    correlation_temporal: f64 = 30.0, [0.0, 1000.0], "share",
-        "mu.";
-    correlation_rho: f64 = 1.0, [0.0001, 1000.0], "x",
-        "rho.";
-    correlation_growth: f64 = 10.0, [1.0, 1000.0], "x",
-        "rho growth.";
+        "Cells along the window's side; an odd number is rounded up.";
+    correlation_label_sigma: f64 = 0.0625, [0.001, 1.0], "sqrt(w h) of what the filter looks at",
+        "Standard deviation of the response that the filter is to give.";
+    correlation_support: f64 = 1.3, [0.1, 10.0], "share of w and h of what the filter looks at",
+        "The filter is zero farther from the centre than this.";
+    correlation_temporal: f64 = 30.0, [0.0, 1e6], "penalty",
+        "mu: how strongly a later filter is held to the one before.";
     correlation_rounds: usize = 2, [1, 20], "rounds",
-        "ADMM.";
-    correlation_colour: f64 = 1.0, [0.0, 100.0], "share",
-        "colour.";
-    correlation_support: f64 = 1.0, [0.1, 10.0], "share",
-        "support.";
-    correlation_interval: usize = 2, [1, 1000], "frames",
-        "learn.";
-    peak_share: f64 = 0.5, [0.0, 0.99], "share",
-        "Particles drawn around the peak.";
-    peak_spread: f64 = 0.05, [0.001, 10.0], "share of sqrt(area)",
-        "sd around the peak.";
+        "Rounds of the alternating direction method in which the filter learns.";
+    correlation_colour: f64 = 1.0, [0.0, 100.0], "share of the gradients'",
+        "Root mean square of the window's colours beside that of its gradients.";
+    correlation_interval: usize = 2, [1, 10_000], "frames",
+        "The filter learns every so many frames.";
+    peak_share: f64 = 0.5, [0.0, 0.99], "share of particles",
+        "Particles drawn around the place where the filter peaks instead of from the walk.";
+    peak_spread: f64 = 0.05, [0.001, 10.0], "sqrt(w h) of the part",
+        "Standard deviation of those draws along each axis.";
 
     first_targets: usize = 30, [1, 10_000], "samples",
         "N+: target samples of the first frame, always kept.";

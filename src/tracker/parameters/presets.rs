@@ -26,20 +26,27 @@ impl Parameters {
     fn paper() -> Self {
         Self {
             region: Region::Part,
+            particles: 800,
             scale_about_centre: false,
             resampling: Resampling::Multinomial,
             resampling_threshold: 0.5,
             epsilon: 1e-20,
             estimate_after_resampling: true,
+            stumps: 40,
+            feature_pool: 300,
+            boosting_turns: 1,
             score_per_root_stump: false,
             score_weight: 1.0,
             hog_weight: 20.0,
             hog_ageing: 0.0,
+            correlation_weight: 0.0,
+            recent_samples: 400,
             target_jitter: 5.0,
             target_jitter_share: 1.0,
             balanced_labels: false,
             update_interval: 1,
             update_score: -1000.0,
+            update_confidence: 0.0,
             ..Self::default()
         }
     }
