@@ -2,6 +2,7 @@
 #![deny(missing_docs)]
 
 pub mod catalogue;
+pub mod check;
 pub mod compare;
 pub mod dataset;
 pub mod figures;

@@ -10,6 +10,7 @@ use otb_eval::{
     runner::FactoryError, store::StoreError,
 };
 
+mod check;
 mod compare;
 mod differences;
 mod inputs;
@@ -41,6 +42,9 @@ struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    /// Tell what data holds: frames, rows, odd and damaged files, labels that the boxes contradict
+    #[command(after_help = check::EXAMPLES)]
+    Check(check::CheckArgs),
     /// Run trackers over sequences; a second run continues where the first was stopped
     #[command(after_help = run::EXAMPLES)]
     Run(run::RunArgs),
@@ -64,6 +68,7 @@ enum Command {
 /// Runs the program on its command line.
 pub fn main() -> ExitCode {
     let outcome = match Cli::parse().command {
+        Command::Check(args) => check::run(&args),
         Command::Run(args) => run::run(&args),
         Command::Plan(args) => plan::plan(&args),
         Command::Score(args) => score::score(&args),
