@@ -4,6 +4,7 @@
 pub mod catalogue;
 pub mod check;
 pub mod compare;
+pub mod convert;
 pub mod dataset;
 pub mod figures;
 pub mod plots;

@@ -6,12 +6,13 @@ use anyhow::Error;
 use clap::{Parser, Subcommand};
 use infopart::program::{self, BAD_INPUT, INTERRUPTED};
 use otb_eval::{
-    catalogue::CatalogueError, dataset::DatasetError, protocol::ProtocolError, results::ResultsError,
-    runner::FactoryError, store::StoreError,
+    catalogue::CatalogueError, convert::ConvertError, dataset::DatasetError, protocol::ProtocolError,
+    results::ResultsError, runner::FactoryError, store::StoreError,
 };
 
 mod check;
 mod compare;
+mod convert;
 mod differences;
 mod inputs;
 mod jobs;
@@ -57,6 +58,9 @@ enum Command {
     /// Compare two trackers on the same sequences and seeds
     #[command(after_help = compare::EXAMPLES)]
     Compare(Box<compare::CompareArgs>),
+    /// Turn results from one toolkit's layout into another's
+    #[command(after_help = convert::EXAMPLES)]
+    Convert(convert::ConvertArgs),
     /// Draw success and precision plots
     #[command(after_help = plot::EXAMPLES)]
     Plot(Box<plot::PlotArgs>),
@@ -73,6 +77,7 @@ pub fn main() -> ExitCode {
         Command::Plan(args) => plan::plan(&args),
         Command::Score(args) => score::score(&args),
         Command::Compare(args) => compare::run(&args),
+        Command::Convert(args) => convert::run(&args),
         Command::Plot(args) => plot::plot(&args),
         Command::Report(args) => report::report(&args),
     };
@@ -89,7 +94,8 @@ fn code_of(error: &Error) -> Option<u8> {
         || error.is::<ProtocolError>()
         || error.is::<FactoryError>()
         || error.is::<StoreError>()
-        || error.is::<ResultsError>();
+        || error.is::<ResultsError>()
+        || error.is::<ConvertError>();
     is_input.then_some(BAD_INPUT)
 }
 

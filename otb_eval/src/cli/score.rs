@@ -99,7 +99,8 @@ pub fn score(args: &ScoreArgs) -> Result<()> {
 /// Under six toolkits, the failures of some are a finding; what none can score is a problem, told once.
 fn tell_once(scored: &[(Table, Vec<ScoreProblem>)], problems: &mut Problems) {
     if let Some((_, unscored)) = scored.first() {
-        unscored.iter().filter(|problem| !problem.is_crash()).for_each(|problem| problems.tell(problem));
+        let is_finding = |problem: &&ScoreProblem| problem.is_crash() || problem.is_length();
+        unscored.iter().filter(|problem| !is_finding(problem)).for_each(|problem| problems.tell(problem));
     }
 }
 

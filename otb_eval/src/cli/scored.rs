@@ -30,9 +30,10 @@ pub struct ScoredArgs {
     /// toolkit's own; they differ on 14 sequences]
     #[arg(long, value_name = "tb100|json|none")]
     attributes: Option<String>,
-    /// What rows are worth that a result lacks, under plain rules
-    #[arg(long, value_enum, default_value_t = MissingRows::Drop)]
-    missing_rows: MissingRows,
+    /// What rows are worth that a result lacks, under plain rules; given, a result of another length than its ground
+    /// truth is no problem [default: drop, and tell of it]
+    #[arg(long, value_enum)]
+    missing_rows: Option<MissingRows>,
     /// What a row without a box is worth, under plain rules
     #[arg(long, value_enum, default_value_t = LostRows::AsIs)]
     lost_boxes: LostRows,
@@ -80,7 +81,7 @@ impl ScoredArgs {
     pub fn rules(&self, toolkit: Toolkit) -> Rules {
         let mut rules = toolkit.rules();
         if toolkit == Toolkit::Plain {
-            if self.missing_rows == MissingRows::Miss {
+            if self.missing_rows == Some(MissingRows::Miss) {
                 rules = rules.with_missing_rows_as_misses();
             }
             if self.lost_boxes == LostRows::Carry {
@@ -105,8 +106,15 @@ impl ScoredArgs {
             Some(word) => Some(word.parse::<AttributeSource>().context("--attributes")?),
         };
         let sequences = self.data.selected()?;
-        let undo_scale = self.sre_undo_scale;
-        Ok(score(dataset, results, &ScoreOptions { rules, protocol, sequences, attributes, undo_scale }))
+        let options = ScoreOptions {
+            rules,
+            protocol,
+            sequences,
+            attributes,
+            undo_scale: self.sre_undo_scale,
+            accept_lengths: self.missing_rows.is_some(),
+        };
+        Ok(score(dataset, results, &options))
     }
 
     /// Scores every protocol asked for, or all there are, and tells what could not be scored.

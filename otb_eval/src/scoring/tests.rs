@@ -25,6 +25,7 @@ fn options(toolkit: Toolkit, protocol: Protocol) -> ScoreOptions {
         sequences: None,
         attributes: Some(AttributeSource::Tb100Txt),
         undo_scale: false,
+        accept_lengths: false,
     }
 }
 
