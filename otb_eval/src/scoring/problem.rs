@@ -48,7 +48,7 @@ pub enum ScoreProblem {
     },
     /// A result that has not a row a frame. It is scored all the same, as the toolkit does it.
     #[error(
-        "{tracker}, {stem}: the result has {result} rows and the ground truth {truth}; it is scored as {toolkit} does it; track the sequence again, or accept it with --missing-rows drop or miss"
+        "{tracker}, {stem}: the result has {result} rows and the ground truth {truth}; it is scored under the rules of {toolkit} (--explain); track the sequence again, or accept this with --missing-rows"
     )]
     Lengths {
         /// The tracker.
