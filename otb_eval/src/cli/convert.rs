@@ -15,19 +15,21 @@ use super::inputs::Problems;
 pub const EXAMPLES: &str = "\
 Examples:
   otb_eval convert results pysot_results --from run --to pysot
-  otb_eval convert got10k/results results --from got10k --to flat       # with the times in times/
+  otb_eval convert got10k/results flat_results --from got10k --to flat
   otb_eval convert tracker_benchmark/results results --from jwlim --to run --trackers STRUCK,TLD
 
 Layouts:
-  run         PROTOCOL/TRACKER/seed_S/SEQ[_SEGMENT].txt, what `otb_eval run` writes; SEQ_time.txt beside
+  run         PROTOCOL/TRACKER/seed_S/SEQ[_SEGMENT].txt, as `otb_eval run` writes; times beside
   flat        TRACKER/SEQ.txt, SEQ_time.txt beside
   pysot       TRACKER/SEQ.txt, no times
   got10k      OTB2015/TRACKER/SEQ.txt, times/SEQ_time.txt
   pytracking  TRACKER/PARAM[_RRR]/SEQ.txt with tabs, SEQ_time.txt beside; RRR is the seed
-  jwlim       OPE|TRE|SRE/TRACKER/SEQ.json of the Python benchmark: frames per second instead of times
+  jwlim       OPE|TRE|SRE/TRACKER/SEQ.json of the Python benchmark: frames/s instead of times
 
-Sequences get the spelling of the layout (Jogging-1, Jogging_1, Jogging.1); boxes keep every digit. The .mat files of the \
-MATLAB benchmark are read by a script with SciPy: python3 otb_eval/scripts/mat_to_text.py results/*.mat --out results
+Sequences get the spelling of the layout (Jogging-1, Jogging_1, Jogging.1); boxes keep every digit.
+
+The .mat files of the MATLAB benchmark are read by a script with SciPy:
+  python3 otb_eval/scripts/mat_to_text.py results_OPE/*.mat --out results
 
 Exit codes: 0 success, 1 internal failure, 2 bad input, or something could not be converted (it is named, and everything \
 else is)";

@@ -25,8 +25,19 @@ mod scored;
 mod text_table;
 
 const EXAMPLES: &str = "\
-Examples:
-  otb_eval run --data otb people --sequences people8 --out results
+Examples, in the order of an evaluation (otb and people are folders of OTB sequences):
+  otb_eval check otb people
+  otb_eval run --data otb people --sequences people8 --trackers infopart,whole-body --seeds 5 --out results
+  otb_eval score --data otb people --results results
+  otb_eval compare infopart whole-body --data otb people --results results
+  otb_eval plot --data otb people --results results --out plots
+  otb_eval report --data otb people --results results --out report.html
+
+Results of other trackers, RESULTS/TRACKER/SEQ.txt, against the boxes of OTB100.json, as six toolkits would score them:
+  otb_eval score --data OTB100.json --results published --toolkit all
+
+`otb_eval COMMAND --help` has more examples.
+
 Exit codes:
   0    success
   1    internal failure

@@ -61,7 +61,40 @@ enum LostRows {
     Carry,
 }
 
+/// Sequences without ground truth that are named; results may have many more sequences than the data.
+const NAMED: usize = 3;
+
+/// Tells what could not be scored, many sequences without ground truth in one line.
+pub fn tell<'a>(unscored: impl IntoIterator<Item = &'a ScoreProblem>, problems: &mut Problems) {
+    let (without_truth, others): (Vec<&ScoreProblem>, Vec<&ScoreProblem>) =
+        unscored.into_iter().partition(|problem| matches!(problem, ScoreProblem::NoTruth { .. }));
+    if without_truth.len() <= NAMED {
+        without_truth.iter().for_each(|problem| problems.tell(problem));
+    } else {
+        let named = without_truth.iter().take(NAMED).filter_map(|problem| match problem {
+            ScoreProblem::NoTruth { sequence } => Some(sequence.as_str()),
+            _ => None,
+        });
+        let named: Vec<&str> = named.collect();
+        problems.tell(&format!(
+            "{} and {} more: no ground truth of them; add their folders with --data, or choose others with --sequences",
+            named.join(", "),
+            without_truth.len() - NAMED
+        ));
+    }
+    others.iter().for_each(|problem| problems.tell(problem));
+}
+
 impl ScoredArgs {
+    /// For a command that names its trackers otherwise.
+    pub fn refuse_trackers(&self) -> Result<()> {
+        if self.trackers.is_some() {
+            let how = "--trackers: the two trackers are A and B themselves; leave the flag out";
+            return Err(BadInput(how.into()).into());
+        }
+        Ok(())
+    }
+
     /// The folder of results.
     pub fn results(&self) -> Result<&PathBuf> {
         let how = "give --results: what `otb_eval run` wrote, or a folder of TRACKER/SEQ.txt";
@@ -133,7 +166,7 @@ impl ScoredArgs {
         for protocol in protocols {
             let results = self.open_results(protocol)?;
             let (table, unscored) = self.score(dataset, &results, toolkit, protocol)?;
-            unscored.iter().for_each(|problem| problems.tell(problem));
+            tell(&unscored, problems);
             tables.push((results, table));
         }
         Ok(tables)

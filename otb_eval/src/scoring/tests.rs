@@ -112,7 +112,10 @@ fn what_is_missing_or_fails_is_named_and_the_rest_scored() {
     let (table, problems) = scored(root.path(), &names, &options(Toolkit::Plain, Protocol::Ope));
     assert_eq!(problems.len(), 3, "{problems:?}");
     assert!(problems[0].starts_with("Stranger: no ground truth"), "{problems:?}");
-    assert!(problems[1].starts_with("A, Deer: the result has 58 rows and the ground truth 60"), "{problems:?}");
+    assert!(
+        problems[1].starts_with("A, Deer: the result has 58 rows and the ground truth 60"),
+        "{problems:?}"
+    );
     assert!(problems[2].starts_with("B, Deer: no result (seed 0)"), "{problems:?}");
     let accepting = ScoreOptions { accept_lengths: true, ..options(Toolkit::Plain, Protocol::Ope) };
     assert_eq!(scored(root.path(), &names, &accepting).1.len(), 2);
