@@ -1,6 +1,8 @@
 //! The Python benchmark's JSON: `OPE/TRACKER/SEQ.json`, a list of one, twenty (TRE) or twelve (SRE) segments.
 //!
 //! A segment has its first and last frame by the numbers in the files' names, and frames per second instead of times.
+//! Its results are boxes, or are turned into boxes as the benchmark does: from the two opposite corners of an affine
+//! template, rounded down.
 
 use std::{
     fs,
@@ -23,6 +25,8 @@ struct Entry {
     #[serde(rename = "resType")]
     kind: Option<String>,
     fps: Option<f64>,
+    #[serde(rename = "tmplsize")]
+    template: Option<Vec<f64>>,
     res: Vec<Vec<Option<f64>>>,
 }
 
@@ -69,12 +73,6 @@ fn read_file(path: &Path, tracker: &str, protocol: Protocol) -> Result<Vec<Track
     }
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     let track = |(index, segment): (usize, Entry)| {
-        let kind = segment.kind.as_deref().unwrap_or("rect");
-        if kind != "rect" {
-            return Err(wrong(format!(
-                "its results are of type `{kind}`, not boxes; turn them into `rect` with the benchmark's own code first"
-            )));
-        }
         let label = match protocol {
             Protocol::Ope => None,
             Protocol::Tre => Some(format!("{:02}", index + 1)),
@@ -82,9 +80,7 @@ fn read_file(path: &Path, tracker: &str, protocol: Protocol) -> Result<Vec<Track
                 Some(segment.shift.ok_or_else(|| wrong(format!("segment {} has no shiftType", index + 1)))?)
             }
         };
-        let rows: Option<Vec<Rect>> = segment.res.iter().map(|row| rect(row)).collect();
-        let rows =
-            rows.ok_or_else(|| wrong("a row of `res` has not four numbers; write x, y, w, h".into()))?;
+        let rows = boxes(&segment).map_err(wrong)?;
         let seconds = segment.fps.filter(|fps| *fps > 0.0).map(|fps| vec![fps.recip(); rows.len()]);
         let sequence = in_the_benchmarks_spelling(segment.sequence.as_deref().unwrap_or(&stem));
         Ok(Track { tracker: tracker.to_owned(), protocol, seed: 0, sequence, label, rows, seconds })
@@ -92,10 +88,50 @@ fn read_file(path: &Path, tracker: &str, protocol: Protocol) -> Result<Vec<Track
     segments.into_iter().enumerate().map(track).collect()
 }
 
-fn rect(row: &[Option<f64>]) -> Option<Rect> {
-    let number = |value: Option<f64>| value.unwrap_or(f64::NAN);
+/// A segment's results as boxes.
+fn boxes(segment: &Entry) -> Result<Vec<Rect>, String> {
+    let number = |value: &Option<f64>| value.unwrap_or(f64::NAN);
+    let rows: Vec<Vec<f64>> = segment.res.iter().map(|row| row.iter().map(number).collect()).collect();
+    let rects: Option<Vec<Rect>> = match segment.kind.as_deref().unwrap_or("rect") {
+        "rect" => rows.iter().map(|row| rect(row)).collect(),
+        "affine_ivt" | "ivtAff" => {
+            let Some(&[w, h]) = segment.template.as_deref() else {
+                return Err("its results are affine, but `tmplsize` has not two numbers".to_owned());
+            };
+            rows.iter().map(|row| of_affine(row, w, h)).collect()
+        }
+        "4corner" | "affine" => rows.chunks(2).map(of_corners).collect(),
+        kind => {
+            return Err(format!(
+                "its results are of type `{kind}`, not boxes; turn them into `rect` with the benchmark's own code first"
+            ));
+        }
+    };
+    rects.ok_or_else(|| "a row of `res` has not as many numbers as its `resType` says".to_owned())
+}
+
+fn rect(row: &[f64]) -> Option<Rect> {
     let &[x, y, w, h] = row else { return None };
-    Some(Rect::new(number(x), number(y), number(w), number(h)))
+    Some(Rect::new(x, y, w, h))
+}
+
+/// The box between two opposite corners.
+fn between((left, top): (f64, f64), (right, bottom): (f64, f64)) -> Rect {
+    let (x, y) = (left.floor(), top.floor());
+    Rect::new(x, y, right.floor() - x, bottom.floor() - y)
+}
+
+/// IVT's six numbers: the centre, and the matrix that a template of that width and height is placed with.
+fn of_affine(row: &[f64], w: f64, h: f64) -> Option<Rect> {
+    let &[x, y, xx, xy, yx, yy] = row else { return None };
+    let (half_w, half_h) = ((xx * w + xy * h) / 2.0, (yx * w + yy * h) / 2.0);
+    Some(between((x - half_w, y - half_h), (x + half_w, y + half_h)))
+}
+
+/// A row of the corners' x and one of their y, the third corner opposite to the first.
+fn of_corners(rows: &[Vec<f64>]) -> Option<Rect> {
+    let [x, y] = rows else { return None };
+    Some(between((*x.first()?, *y.first()?), (*x.get(2)?, *y.get(2)?)))
 }
 
 /// A file for every tracker, protocol and sequence, with its segments in their order.

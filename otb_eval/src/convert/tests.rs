@@ -142,14 +142,14 @@ fn nothing_is_overwritten_and_wrong_files_are_named() {
         format!(r#"[{{"seqName": "Walk", "resType": "{kind}", "fps": 2, "res": {res}}}]"#)
     };
     fs::write(folder.join("Good.json"), one("rect", "[[1, 2, 3, NaN]]")).unwrap();
-    fs::write(folder.join("Affine.json"), one("ivtAff", "[[1, 2, 3, 4, 5, 6]]")).unwrap();
+    fs::write(folder.join("Affine.json"), one("LK_Aff", "[[1, 2, 3, 4, 5, 6]]")).unwrap();
     fs::write(folder.join("Short.json"), one("rect", "[[1, 2, 3]]")).unwrap();
     fs::write(folder.join("Broken.json"), "[{").unwrap();
     let (tracks, problems) = read(Layout::Jwlim, &root.path().join("json")).unwrap();
     assert!(tracks.len() == 1 && tracks[0].rows[0].h.is_nan() && tracks[0].seconds == Some(vec![0.5]));
     let told: Vec<String> = problems.iter().map(ToString::to_string).collect();
     for (told, needle) in
-        told.iter().zip(["Affine.json: its results are of type `ivtAff`", "Broken.json", "Short.json"])
+        told.iter().zip(["Affine.json: its results are of type `LK_Aff`", "Broken.json", "Short.json"])
     {
         assert!(told.contains(needle), "{told}");
     }
@@ -159,4 +159,22 @@ fn nothing_is_overwritten_and_wrong_files_are_named() {
     }
     assert!(matches!(read(Layout::Jwlim, root.path()), Err(ConvertError::Nothing { .. })));
     assert!("votx".parse::<Layout>().unwrap_err().to_string().contains("run, flat, pysot"));
+}
+
+#[test]
+fn affine_results_become_the_benchmarks_boxes() {
+    let root = tempfile::tempdir().unwrap();
+    let folder = root.path().join("SRE/IVT");
+    fs::create_dir_all(&folder).unwrap();
+    // IVT's archived start on Couple, whose true box 51,47,25,62 is moved to the left by 3.
+    let affine = r#"{"shiftType": "left", "resType": "affine_ivt", "tmplsize": [32.0, 32.0], "res": [[61.0, 78.0, 0.7813, 0.0, 0.0, 1.9375]]}"#;
+    let corners =
+        r#"{"shiftType": "up", "resType": "4corner", "res": [[48.5, 73.5, 73.5, 48.5], [47, 47, 109, 109]]}"#;
+    fs::write(folder.join("Couple.json"), format!("[{affine}, {corners}]")).unwrap();
+    let (tracks, problems) = read(Layout::Jwlim, root.path()).unwrap();
+    assert!(problems.is_empty(), "{problems:?}");
+    for track in &tracks {
+        assert_eq!(track.rows, [Rect::new(48.0, 47.0, 25.0, 62.0)], "{:?}", track.label);
+    }
+    assert_eq!(tracks.len(), 2);
 }
