@@ -76,9 +76,12 @@ fn read_file(path: &Path, tracker: &str, protocol: Protocol) -> Result<Vec<Track
         let label = match protocol {
             Protocol::Ope => None,
             Protocol::Tre => Some(format!("{:02}", index + 1)),
-            Protocol::Sre => {
-                Some(segment.shift.ok_or_else(|| wrong(format!("segment {} has no shiftType", index + 1)))?)
-            }
+            Protocol::Sre => Some(
+                segment
+                    .shift
+                    .clone()
+                    .ok_or_else(|| wrong(format!("segment {} has no shiftType", index + 1)))?,
+            ),
         };
         let rows = boxes(&segment).map_err(wrong)?;
         let seconds = segment.fps.filter(|fps| *fps > 0.0).map(|fps| vec![fps.recip(); rows.len()]);
