@@ -2,7 +2,9 @@
 #![deny(missing_docs)]
 
 pub mod catalogue;
+pub mod check;
 pub mod compare;
+pub mod convert;
 pub mod dataset;
 pub mod figures;
 pub mod plots;

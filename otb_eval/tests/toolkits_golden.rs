@@ -120,8 +120,14 @@ fn boxes_of_zeros_are_carried_by_two() {
 
 fn table(dataset: &Dataset, results: &Path, rules: Rules) -> Table {
     let results = Results::open(results, Protocol::Ope).unwrap();
-    let options =
-        ScoreOptions { rules, protocol: Protocol::Ope, sequences: None, attributes: None, undo_scale: false };
+    let options = ScoreOptions {
+        rules,
+        protocol: Protocol::Ope,
+        sequences: None,
+        attributes: None,
+        undo_scale: false,
+        accept_lengths: false,
+    };
     let (table, problems) = score(dataset, &results, &options);
     assert_eq!((table.trackers.len(), table.sequences.len(), problems.len()), (11, 100, 0));
     table

@@ -2,16 +2,53 @@
 
 use std::{fs, io::Cursor, path::Path};
 
-use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader};
+use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, metadata::Orientation};
 
 use super::SequenceError;
 use crate::frame::{Frame, PixelFormat};
 
 /// Decodes a JPEG, PNG or BMP file, whatever its name says. Grey stays grey, all else becomes RGB; 16-bit samples are
 /// scaled to 8 bits, alpha is dropped, and the image is turned upright as its EXIF orientation says.
-pub(super) fn decode_file(path: &Path) -> Result<Frame, SequenceError> {
+///
+/// # Errors
+/// [`SequenceError::Io`] if the file cannot be read, [`SequenceError::BadImage`] if it is no whole image.
+pub fn decode_image(path: &Path) -> Result<Frame, SequenceError> {
     let bytes = fs::read(path).map_err(|source| SequenceError::Io { path: path.to_owned(), source })?;
     decode(&bytes).map_err(|reason| SequenceError::BadImage { path: path.to_owned(), reason })
+}
+
+/// Width and height in pixels of an image file, which must be whole. The pixels of a JPEG are not decoded, so that many
+/// files can be looked through; other formats are decoded.
+///
+/// # Errors
+/// [`SequenceError::Io`] or [`SequenceError::BadImage`], as decoding the file would give; damage inside the pixels of a
+/// JPEG that is not cut short is not found.
+pub fn probe_image(path: &Path) -> Result<(usize, usize), SequenceError> {
+    let bytes = fs::read(path).map_err(|source| SequenceError::Io { path: path.to_owned(), source })?;
+    probe(&bytes).map_err(|reason| SequenceError::BadImage { path: path.to_owned(), reason })
+}
+
+fn probe(bytes: &[u8]) -> Result<(usize, usize), String> {
+    if format_of(bytes)? != ImageFormat::Jpeg {
+        let frame = decode(bytes)?;
+        return Ok((frame.width(), frame.height()));
+    }
+    if !jpeg_is_whole(bytes) {
+        return Err("the file is truncated".to_owned());
+    }
+    let reader = ImageReader::with_format(Cursor::new(bytes), ImageFormat::Jpeg);
+    let mut decoder = reader.into_decoder().map_err(|error| error.to_string())?;
+    let (width, height) = decoder.dimensions();
+    let orientation = decoder.orientation().map_err(|error| error.to_string())?;
+    let is_turned = matches!(
+        orientation,
+        Orientation::Rotate90
+            | Orientation::Rotate270
+            | Orientation::Rotate90FlipH
+            | Orientation::Rotate270FlipH
+    );
+    let (width, height) = if is_turned { (height, width) } else { (width, height) };
+    Ok((width as usize, height as usize))
 }
 
 fn decode(bytes: &[u8]) -> Result<Frame, String> {
@@ -132,6 +169,17 @@ mod tests {
             ImageBuffer::from_raw(1, 1, vec![0xFFFF, 0x0101, 0x4040]).unwrap();
         let frame = decode(&png(&colour)).unwrap();
         assert_eq!((frame.view().format(), frame.view().row(0)), (PixelFormat::Rgb, &[255, 1, 0x40][..]));
+    }
+
+    #[test]
+    fn probing_gives_the_size_of_the_decoded_frame_and_finds_cut_files() {
+        let turned = exif_orientation(6);
+        for bytes in [jpeg(&gradient(), None), jpeg(&gradient(), Some(turned)), png(&gradient())] {
+            let frame = decode(&bytes).unwrap();
+            assert_eq!(probe(&bytes), Ok((frame.width(), frame.height())));
+            assert!(probe(&bytes[..bytes.len() / 2]).is_err());
+        }
+        assert_eq!(probe(b""), Err("the file is empty".to_owned()));
     }
 
     #[test]

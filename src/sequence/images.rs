@@ -8,7 +8,7 @@ use std::{
 };
 
 use super::{
-    FrameSource, SequenceError, SourceFrame, decode::decode_file, natural::natural_order,
+    FrameSource, SequenceError, SourceFrame, decode::decode_image, natural::natural_order,
     size_guard::SizeGuard,
 };
 
@@ -34,7 +34,7 @@ impl FrameSource for ImageFiles {
         let Some(path) = self.files.next() else {
             return Ok(None);
         };
-        let frame = decode_file(&path)?;
+        let frame = decode_image(&path)?;
         self.size.check(&frame, || path.display().to_string())?;
         let number = self.next_number;
         self.next_number += 1;

@@ -34,10 +34,11 @@ mod size_guard;
 mod video;
 mod walker;
 
+pub use decode::{decode_image, probe_image};
 pub use error::{RowProblem, SequenceError};
 pub use ground_truth::{parse_boxes, parse_ground_truth, read_boxes, read_ground_truth};
 pub use open::open;
-pub use otb::{OtbTarget, otb_targets};
+pub use otb::{OtbImages, OtbTarget, otb_images, otb_targets};
 pub use walker::{Occluder, Walker, WalkerOptions};
 
 /// A frame and where it stands in its source.

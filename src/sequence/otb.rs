@@ -61,6 +61,26 @@ pub fn otb_targets(folder: &Path) -> Result<Vec<OtbTarget>, SequenceError> {
     Ok(folder.annotations.iter().map(target).collect())
 }
 
+/// The images of an OTB folder.
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct OtbImages {
+    /// All of them, in the order of their numbers.
+    pub all: Vec<PathBuf>,
+    /// Those that the rows of the ground truth belong to, from the first row on, as [`open`](super::open) delivers them;
+    /// where nothing is known of the sequence, all.
+    pub covered: Vec<PathBuf>,
+}
+
+/// The images of an OTB folder whose ground truth has that many rows; none if it has no images.
+///
+/// # Errors
+/// [`SequenceError::Io`] if `img/` cannot be read.
+pub fn otb_images(folder: &Path, rows: usize) -> Result<OtbImages, SequenceError> {
+    let all = images_in(&folder.join("img"))?;
+    Ok(OtbImages { covered: covered(all.clone(), rows, &folder_name(folder)), all })
+}
+
 /// A ground truth file that has rows.
 #[derive(Debug)]
 struct Annotation {

@@ -15,14 +15,15 @@ use serde::Serialize;
 
 use super::{
     score::{print, write},
-    scored::ScoredArgs,
+    scored::{ScoredArgs, tell},
     text_table::TextTable,
 };
 
 pub const EXAMPLES: &str = "\
 Examples:
   otb_eval compare infopart whole-body --data otb people --results results
-  otb_eval compare infopart whole-body --data otb people --results results --protocol tre --json part.json
+  otb_eval compare infopart whole-body --data otb people --results results --json part.json
+  otb_eval compare ATOM KCF --data OTB100.json --results published --toolkit pysot
 
 A difference is A minus B, paired by sequence and seed; positive is better for A. Its 95 % interval is a bootstrap that \
 draws sequences, and seeds within them: where it spans 0, other sequences could well reverse it. Times are compared \
@@ -67,11 +68,12 @@ struct Outcome {
 }
 
 pub fn run(args: &CompareArgs) -> Result<()> {
+    args.scored.refuse_trackers()?;
     let (dataset, mut problems) = args.scored.data.open()?;
     let names = [args.first.clone(), args.second.clone()];
     let results = args.scored.open_results(args.protocol)?.only(&names)?;
     let (table, unscored) = args.scored.score(&dataset, &results, args.toolkit, args.protocol)?;
-    unscored.iter().for_each(|problem| problems.tell(problem));
+    tell(&unscored, &mut problems);
     let outcome = outcome(args, &table)?;
     print(&text(&outcome))?;
     if let Some(path) = &args.json {

@@ -13,8 +13,8 @@ use otb_eval::{
 
 use super::text_table::TextTable;
 
-/// Sequences that are named for a reason; of the others only the number is told.
-const NAMED: usize = 6;
+/// Sequences that are named; of the others only the number is told.
+const NAMED: usize = 3;
 
 /// Scores under every toolkit, what fails where, and what in the files they treat differently.
 pub fn text(dataset: &Dataset, results: &Results, scored: &[(Table, Vec<ScoreProblem>)]) -> String {
@@ -27,18 +27,53 @@ pub fn text(dataset: &Dataset, results: &Results, scored: &[(Table, Vec<ScorePro
         text,
         "A mean is over the sequences that the toolkit does not fail on; * marks one without some."
     );
-    let failures: Vec<&ScoreProblem> =
-        scored.iter().flat_map(|(_, problems)| problems).filter(|problem| problem.is_crash()).collect();
-    if !failures.is_empty() {
-        let _ = writeln!(text, "\nWhere a toolkit would fail");
-        failures.iter().for_each(|failure| text += &format!("  {failure}\n"));
-    }
+    text += &failures(scored);
     text += "\nWhy they differ\n";
     let protocol = scored.first().map_or(Protocol::Ope, |(table, _)| table.protocol);
-    for tracker in &results.trackers {
-        text += &why(dataset, tracker, protocol);
+    text + &why(dataset, &results.trackers, protocol)
+}
+
+/// A line for each toolkit and each tracker that it fails on.
+fn failures(scored: &[(Table, Vec<ScoreProblem>)]) -> String {
+    let mut lines = String::new();
+    for (table, problems) in scored {
+        for tracker in &table.trackers {
+            let (mut stems, mut causes) = (Vec::new(), Vec::new());
+            for problem in problems {
+                if let ScoreProblem::Crash { tracker: of, stem, source } = problem
+                    && *of == tracker.tracker
+                {
+                    add(&mut stems, stem.clone());
+                    add(&mut causes, source.cause());
+                }
+            }
+            if !stems.is_empty() {
+                let (name, count) = (&tracker.tracker, stems.len());
+                let causes = causes.join("; ");
+                lines +=
+                    &format!("  {} on {name}, {count}: {}: {causes}\n", table.toolkit, shortened(&stems));
+            }
+        }
     }
-    text
+    if lines.is_empty() {
+        return lines;
+    }
+    format!("\nWhere a toolkit would fail (--toolkit plain scores them all; --json has every row)\n{lines}")
+}
+
+fn add<T: PartialEq>(list: &mut Vec<T>, one: T) {
+    if !list.contains(&one) {
+        list.push(one);
+    }
+}
+
+/// The first few names, and how many more there are.
+fn shortened(stems: &[String]) -> String {
+    let named = stems.iter().take(NAMED).map(String::as_str).collect::<Vec<_>>().join(", ");
+    match stems.len().saturating_sub(NAMED) {
+        0 => named,
+        more => format!("{named} and {more} more"),
+    }
 }
 
 fn scores(scored: &[(Table, Vec<ScoreProblem>)], measure: Measure) -> TextTable {
@@ -57,36 +92,56 @@ fn scores(scored: &[(Table, Vec<ScoreProblem>)], measure: Measure) -> TextTable 
     text
 }
 
-/// The reasons in a tracker's files, each with its sequences.
-fn why(dataset: &Dataset, tracker: &TrackerResults, protocol: Protocol) -> String {
-    let mut found: BTreeMap<u8, (Reason, usize, Vec<String>)> = BTreeMap::new();
+/// A reason in a tracker's files: of how many rows, and in which.
+struct Found {
+    reason: Reason,
+    rows: usize,
+    stems: Vec<String>,
+}
+
+/// The reasons in all files, each told once of the trackers that share it.
+fn why(dataset: &Dataset, trackers: &[TrackerResults], protocol: Protocol) -> String {
+    let mut told: Vec<(Found, Vec<&str>)> = Vec::new();
+    for tracker in trackers {
+        for found in reasons_in(dataset, tracker, protocol).into_values() {
+            let same = |(other, _): &&mut (Found, Vec<&str>)| {
+                kind(other.reason) == kind(found.reason)
+                    && (other.rows, &other.stems) == (found.rows, &found.stems)
+            };
+            match told.iter_mut().find(same) {
+                Some((_, names)) => names.push(&tracker.name),
+                None => told.push((found, vec![&tracker.name])),
+            }
+        }
+    }
+    if told.is_empty() {
+        return "  nothing in these files that toolkits treat differently\n".to_owned();
+    }
+    told.sort_by_key(|(found, _)| kind(found.reason));
+    let line = |(Found { reason, rows, stems }, names): &(Found, Vec<&str>)| {
+        let everyone = names.len() == trackers.len() && names.len() > 1;
+        let names = if everyone { "every tracker".to_owned() } else { names.join(", ") };
+        format!("  {names}: {}; in {}\n", reason.with_rows(*rows), shortened(stems))
+    };
+    told.iter().map(line).collect()
+}
+
+fn reasons_in(dataset: &Dataset, tracker: &TrackerResults, protocol: Protocol) -> BTreeMap<u8, Found> {
+    let mut all: BTreeMap<u8, Found> = BTreeMap::new();
     for seed in &tracker.seeds {
         for target in &dataset.targets {
             for (label, start) in starts_of(protocol, &target.truth).unwrap_or_default() {
                 let Some(Ok(file)) = seed.read(&target.name, label.as_deref()) else { continue };
                 for reason in reasons(&target.truth[start..], &file.rows) {
-                    let entry = found.entry(kind(reason)).or_insert((reason, 0, Vec::new()));
-                    entry.1 += reason.rows();
-                    entry.2.push(stem(&target.name, label.as_deref()));
+                    let nothing = Found { reason, rows: 0, stems: Vec::new() };
+                    let found = all.entry(kind(reason)).or_insert(nothing);
+                    found.rows += reason.rows();
+                    add(&mut found.stems, stem(&target.name, label.as_deref()));
                 }
             }
         }
     }
-    if found.is_empty() {
-        return format!("  {}: nothing in its files that toolkits treat differently\n", tracker.name);
-    }
-    let line = |(reason, rows, mut stems): (Reason, usize, Vec<String>)| {
-        stems.dedup();
-        let more = stems.len().saturating_sub(NAMED);
-        let others = if more > 0 { format!(" and {more} more") } else { String::new() };
-        format!(
-            "  {}: {}; in {}{others}\n",
-            tracker.name,
-            reason.with_rows(rows),
-            stems[..stems.len() - more].join(", ")
-        )
-    };
-    found.into_values().map(line).collect()
+    all
 }
 
 fn kind(reason: Reason) -> u8 {

@@ -6,11 +6,13 @@ use anyhow::Error;
 use clap::{Parser, Subcommand};
 use infopart::program::{self, BAD_INPUT, INTERRUPTED};
 use otb_eval::{
-    catalogue::CatalogueError, dataset::DatasetError, protocol::ProtocolError, results::ResultsError,
-    runner::FactoryError, store::StoreError,
+    catalogue::CatalogueError, convert::ConvertError, dataset::DatasetError, protocol::ProtocolError,
+    results::ResultsError, runner::FactoryError, store::StoreError,
 };
 
+mod check;
 mod compare;
+mod convert;
 mod differences;
 mod inputs;
 mod jobs;
@@ -23,8 +25,19 @@ mod scored;
 mod text_table;
 
 const EXAMPLES: &str = "\
-Examples:
-  otb_eval run --data otb people --sequences people8 --out results
+Examples, in the order of an evaluation (otb and people are folders of OTB sequences):
+  otb_eval check otb people
+  otb_eval run --data otb people --sequences people8 --trackers infopart,whole-body --seeds 5 --out results
+  otb_eval score --data otb people --results results
+  otb_eval compare infopart whole-body --data otb people --results results
+  otb_eval plot --data otb people --results results --out plots
+  otb_eval report --data otb people --results results --out report.html
+
+Results of other trackers, RESULTS/TRACKER/SEQ.txt, against the boxes of OTB100.json, as six toolkits would score them:
+  otb_eval score --data OTB100.json --results published --toolkit all
+
+`otb_eval COMMAND --help` has more examples.
+
 Exit codes:
   0    success
   1    internal failure
@@ -41,6 +54,9 @@ struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    /// Tell what data holds: frames, rows, odd and damaged files, labels that the boxes contradict
+    #[command(after_help = check::EXAMPLES)]
+    Check(check::CheckArgs),
     /// Run trackers over sequences; a second run continues where the first was stopped
     #[command(after_help = run::EXAMPLES)]
     Run(run::RunArgs),
@@ -53,6 +69,9 @@ enum Command {
     /// Compare two trackers on the same sequences and seeds
     #[command(after_help = compare::EXAMPLES)]
     Compare(Box<compare::CompareArgs>),
+    /// Turn results from one toolkit's layout into another's
+    #[command(after_help = convert::EXAMPLES)]
+    Convert(convert::ConvertArgs),
     /// Draw success and precision plots
     #[command(after_help = plot::EXAMPLES)]
     Plot(Box<plot::PlotArgs>),
@@ -64,10 +83,12 @@ enum Command {
 /// Runs the program on its command line.
 pub fn main() -> ExitCode {
     let outcome = match Cli::parse().command {
+        Command::Check(args) => check::run(&args),
         Command::Run(args) => run::run(&args),
         Command::Plan(args) => plan::plan(&args),
         Command::Score(args) => score::score(&args),
         Command::Compare(args) => compare::run(&args),
+        Command::Convert(args) => convert::run(&args),
         Command::Plot(args) => plot::plot(&args),
         Command::Report(args) => report::report(&args),
     };
@@ -84,7 +105,8 @@ fn code_of(error: &Error) -> Option<u8> {
         || error.is::<ProtocolError>()
         || error.is::<FactoryError>()
         || error.is::<StoreError>()
-        || error.is::<ResultsError>();
+        || error.is::<ResultsError>()
+        || error.is::<ConvertError>();
     is_input.then_some(BAD_INPUT)
 }
 

@@ -11,7 +11,7 @@ use super::{score::write, scored::ScoredArgs};
 pub const EXAMPLES: &str = "\
 Examples:
   otb_eval plot --data otb people --results results --out plots
-  otb_eval plot --data OTB100.json --results published --toolkit matlab --attributes none --out plots
+  otb_eval plot --data OTB100.json --results published --attributes none --out plots
 
 Written into DIR, for every protocol of which there are results, and for every attribute that some sequence has:
   success_ope.svg, .png, .csv       and precision_ope, normalised_precision_ope

@@ -15,7 +15,7 @@ use super::{score::write, scored::ScoredArgs};
 pub const EXAMPLES: &str = "\
 Examples:
   otb_eval report --data otb people --results results --out report.html
-  otb_eval report --data OTB100.json --results published --toolkit matlab --no-frames --out report.html
+  otb_eval report --data OTB100.json --results published --no-frames --out report.html
 
 One page that needs nothing else: ranked plots with values under the pointer, tables that sort, bars by attribute, frames \
 with every tracker's box (of its first seed), failures, parameters and commands.";

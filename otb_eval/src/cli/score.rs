@@ -16,14 +16,21 @@ use otb_eval::{
     toolkits::{Toolkit, UnknownToolkit},
 };
 
-use super::{differences, inputs::Problems, scored::ScoredArgs, text_table::TextTable};
+use super::{
+    differences,
+    inputs::Problems,
+    scored::{ScoredArgs, tell},
+    text_table::TextTable,
+};
 
 pub const EXAMPLES: &str = "\
 Examples:
   otb_eval score --data otb people --results results
   otb_eval score --data OTB100.json --results published --toolkit matlab --json scores.json
-  otb_eval score --data OTB100.json --results published --toolkit all      # where the six toolkits differ, and why
-  otb_eval score --explain --toolkit got10k                                # the rules in force
+
+Where the six toolkits differ, and why; and the rules of one:
+  otb_eval score --data OTB100.json --results published --toolkit all
+  otb_eval score --explain --toolkit got10k
 
 Only sequences count of which some tracker has a result, or those of --sequences; one without the result of another \
 tracker is named. Frames per second are updates alone, without init and decoding.
@@ -73,8 +80,8 @@ pub fn score(args: &ScoreArgs) -> Result<()> {
             toolkits.iter().map(|toolkit| args.scored.rules(*toolkit).explain()).collect();
         return print(&texts.join("\n"));
     }
-    let (dataset, mut problems) = args.scored.data.open()?;
     let results = args.scored.open_results(args.protocol)?;
+    let (dataset, mut problems) = args.scored.data.open()?;
     let mut scored = Vec::new();
     for toolkit in toolkits {
         scored.push(args.scored.score(&dataset, &results, toolkit, args.protocol)?);
@@ -82,7 +89,7 @@ pub fn score(args: &ScoreArgs) -> Result<()> {
     match args.toolkit {
         Toolkits::One(_) => {
             let (table, unscored) = &scored[0];
-            unscored.iter().for_each(|problem| problems.tell(problem));
+            tell(unscored, &mut problems);
             print(&text_of(table, args.measure))?;
         }
         Toolkits::Six => {
@@ -99,7 +106,8 @@ pub fn score(args: &ScoreArgs) -> Result<()> {
 /// Under six toolkits, the failures of some are a finding; what none can score is a problem, told once.
 fn tell_once(scored: &[(Table, Vec<ScoreProblem>)], problems: &mut Problems) {
     if let Some((_, unscored)) = scored.first() {
-        unscored.iter().filter(|problem| !problem.is_crash()).for_each(|problem| problems.tell(problem));
+        let is_finding = |problem: &&ScoreProblem| problem.is_crash() || problem.is_length();
+        tell(unscored.iter().filter(|problem| !is_finding(problem)), problems);
     }
 }
 

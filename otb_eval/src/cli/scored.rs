@@ -30,9 +30,10 @@ pub struct ScoredArgs {
     /// toolkit's own; they differ on 14 sequences]
     #[arg(long, value_name = "tb100|json|none")]
     attributes: Option<String>,
-    /// What rows are worth that a result lacks, under plain rules
-    #[arg(long, value_enum, default_value_t = MissingRows::Drop)]
-    missing_rows: MissingRows,
+    /// What rows are worth that a result lacks, under plain rules; given, a result of another length than its ground
+    /// truth is no problem [default: drop, and tell of it]
+    #[arg(long, value_enum)]
+    missing_rows: Option<MissingRows>,
     /// What a row without a box is worth, under plain rules
     #[arg(long, value_enum, default_value_t = LostRows::AsIs)]
     lost_boxes: LostRows,
@@ -60,7 +61,40 @@ enum LostRows {
     Carry,
 }
 
+/// Sequences without ground truth that are named; results may have many more sequences than the data.
+const NAMED: usize = 3;
+
+/// Tells what could not be scored, many sequences without ground truth in one line.
+pub fn tell<'a>(unscored: impl IntoIterator<Item = &'a ScoreProblem>, problems: &mut Problems) {
+    let (without_truth, others): (Vec<&ScoreProblem>, Vec<&ScoreProblem>) =
+        unscored.into_iter().partition(|problem| matches!(problem, ScoreProblem::NoTruth { .. }));
+    if without_truth.len() <= NAMED {
+        without_truth.iter().for_each(|problem| problems.tell(problem));
+    } else {
+        let named = without_truth.iter().take(NAMED).filter_map(|problem| match problem {
+            ScoreProblem::NoTruth { sequence } => Some(sequence.as_str()),
+            _ => None,
+        });
+        let named: Vec<&str> = named.collect();
+        problems.tell(&format!(
+            "{} and {} more: no ground truth of them; add their folders with --data, or choose others with --sequences",
+            named.join(", "),
+            without_truth.len() - NAMED
+        ));
+    }
+    others.iter().for_each(|problem| problems.tell(problem));
+}
+
 impl ScoredArgs {
+    /// For a command that names its trackers otherwise.
+    pub fn refuse_trackers(&self) -> Result<()> {
+        if self.trackers.is_some() {
+            let how = "--trackers: the two trackers are A and B themselves; leave the flag out";
+            return Err(BadInput(how.into()).into());
+        }
+        Ok(())
+    }
+
     /// The folder of results.
     pub fn results(&self) -> Result<&PathBuf> {
         let how = "give --results: what `otb_eval run` wrote, or a folder of TRACKER/SEQ.txt";
@@ -80,7 +114,7 @@ impl ScoredArgs {
     pub fn rules(&self, toolkit: Toolkit) -> Rules {
         let mut rules = toolkit.rules();
         if toolkit == Toolkit::Plain {
-            if self.missing_rows == MissingRows::Miss {
+            if self.missing_rows == Some(MissingRows::Miss) {
                 rules = rules.with_missing_rows_as_misses();
             }
             if self.lost_boxes == LostRows::Carry {
@@ -105,8 +139,15 @@ impl ScoredArgs {
             Some(word) => Some(word.parse::<AttributeSource>().context("--attributes")?),
         };
         let sequences = self.data.selected()?;
-        let undo_scale = self.sre_undo_scale;
-        Ok(score(dataset, results, &ScoreOptions { rules, protocol, sequences, attributes, undo_scale }))
+        let options = ScoreOptions {
+            rules,
+            protocol,
+            sequences,
+            attributes,
+            undo_scale: self.sre_undo_scale,
+            accept_lengths: self.missing_rows.is_some(),
+        };
+        Ok(score(dataset, results, &options))
     }
 
     /// Scores every protocol asked for, or all there are, and tells what could not be scored.
@@ -125,7 +166,7 @@ impl ScoredArgs {
         for protocol in protocols {
             let results = self.open_results(protocol)?;
             let (table, unscored) = self.score(dataset, &results, toolkit, protocol)?;
-            unscored.iter().for_each(|problem| problems.tell(problem));
+            tell(&unscored, problems);
             tables.push((results, table));
         }
         Ok(tables)

@@ -142,7 +142,9 @@ impl Results {
                 Some(position) => trackers.push(self.trackers.remove(position)),
                 None => {
                     let there = self.trackers.iter().chain(&trackers).map(|tracker| tracker.name.as_str());
-                    let there = there.collect::<Vec<_>>().join(", ");
+                    let mut there: Vec<&str> = there.collect();
+                    there.sort_unstable();
+                    let there = there.join(", ");
                     return Err(ResultsError::NoTracker { name: name.clone(), there });
                 }
             }

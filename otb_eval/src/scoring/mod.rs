@@ -41,6 +41,8 @@ pub struct ScoreOptions {
     pub attributes: Option<AttributeSource>,
     /// Whether the scaling of SRE's scaled runs is undone before comparing.
     pub undo_scale: bool,
+    /// Whether a result of another length than its truth is scored without being told as a problem.
+    pub accept_lengths: bool,
 }
 
 /// Scores results against the truth. What cannot be scored is told beside the table of everything else.

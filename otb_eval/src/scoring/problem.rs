@@ -2,7 +2,11 @@
 
 use thiserror::Error;
 
-use crate::{protocol::ProtocolError, results::ResultsError, toolkits::Crash};
+use crate::{
+    protocol::ProtocolError,
+    results::ResultsError,
+    toolkits::{Crash, Toolkit},
+};
 
 /// A result that could not be scored. Everything else is.
 #[derive(Debug, Error)]
@@ -42,6 +46,22 @@ pub enum ScoreProblem {
         /// The file and line, and what to do.
         source: ResultsError,
     },
+    /// A result that has not a row a frame. It is scored all the same, as the toolkit does it.
+    #[error(
+        "{tracker}, {stem}: the result has {result} rows and the ground truth {truth}; it is scored under the rules of {toolkit} (--explain); track the sequence again, or accept this with --missing-rows"
+    )]
+    Lengths {
+        /// The tracker.
+        tracker: String,
+        /// `SEQ[_SEGMENT]`.
+        stem: String,
+        /// Rows of the result.
+        result: usize,
+        /// Rows of the ground truth.
+        truth: usize,
+        /// Whose rules.
+        toolkit: Toolkit,
+    },
     /// The toolkit itself would fail.
     #[error("{tracker}, {stem}: {source}")]
     Crash {
@@ -55,6 +75,11 @@ pub enum ScoreProblem {
 }
 
 impl ScoreProblem {
+    /// Whether it is only about a result's length, and the result is scored.
+    pub fn is_length(&self) -> bool {
+        matches!(self, Self::Lengths { .. })
+    }
+
     /// Whether it is the toolkit's own failure, which it would show its user as well.
     pub fn is_crash(&self) -> bool {
         matches!(self, Self::Crash { .. })

@@ -11,7 +11,7 @@ use crate::{
 
 /// What became of a sequence.
 pub(super) struct SequenceOutcome {
-    /// `None` if a segment is missing, unreadable or crashes the toolkit.
+    /// `None` if a segment is missing, unreadable or crashes the toolkit; times that cannot be read cost no score.
     pub(super) curves: Option<Curves>,
     pub(super) frames_per_second: Option<f64>,
     pub(super) problems: Vec<ScoreProblem>,
@@ -24,14 +24,30 @@ pub(super) fn score(
     options: &ScoreOptions,
 ) -> SequenceOutcome {
     let (mut total, mut problems, mut seconds) = (None::<Hits>, Vec::new(), vec![0.0]);
+    let mut is_whole = true;
     for (label, start) in starts_of(options.protocol, &target.truth).unwrap_or_default() {
         let label = label.as_deref();
         match segment_hits(tracker, seed, target, label, start, options) {
-            Ok(hits) => match &mut total {
-                Some(total) => total.merge(&hits),
-                None => total = Some(hits),
-            },
-            Err(problem) => problems.push(problem),
+            Ok((hits, rows)) => {
+                match &mut total {
+                    Some(total) => total.merge(&hits),
+                    None => total = Some(hits),
+                }
+                let truth = target.truth.len() - start;
+                if rows != truth && !options.accept_lengths {
+                    problems.push(ScoreProblem::Lengths {
+                        tracker: tracker.to_owned(),
+                        stem: stem(&target.name, label),
+                        result: rows,
+                        truth,
+                        toolkit: options.rules.toolkit(),
+                    });
+                }
+            }
+            Err(problem) => {
+                is_whole = false;
+                problems.push(problem);
+            }
         }
         match seed.read_seconds(&target.name, label) {
             Some(Ok(of_segment)) => seconds.extend(of_segment.into_iter().skip(1)),
@@ -41,11 +57,11 @@ pub(super) fn score(
             None => {}
         }
     }
-    let is_whole = problems.is_empty();
     let curves = total.filter(|_| is_whole).map(|hits| hits.curves(&options.rules));
     SequenceOutcome { curves, frames_per_second: frames_per_second(&seconds), problems }
 }
 
+/// The segment's hits, and the rows of its result.
 fn segment_hits(
     tracker: &str,
     seed: &SeedResults,
@@ -53,7 +69,7 @@ fn segment_hits(
     label: Option<&str>,
     start: usize,
     options: &ScoreOptions,
-) -> Result<Hits, ScoreProblem> {
+) -> Result<(Hits, usize), ScoreProblem> {
     let stem = stem(&target.name, label);
     let tracker = tracker.to_owned();
     let Some(file) = seed.read(&target.name, label) else {
@@ -69,6 +85,7 @@ fn segment_hits(
         .rules
         .check_separators(file.separators)
         .and_then(|()| evaluate(&options.rules, truth, &file.rows))
+        .map(|hits| (hits, file.rows.len()))
         .map_err(|source| ScoreProblem::Crash { tracker, stem, source })
 }
 

@@ -25,6 +25,7 @@ fn options(toolkit: Toolkit, protocol: Protocol) -> ScoreOptions {
         sequences: None,
         attributes: Some(AttributeSource::Tb100Txt),
         undo_scale: false,
+        accept_lengths: false,
     }
 }
 
@@ -109,9 +110,15 @@ fn what_is_missing_or_fails_is_named_and_the_rest_scored() {
     put(root.path(), "B/Stranger.txt", BOX, 60);
     let names = ["Couple", "Deer"];
     let (table, problems) = scored(root.path(), &names, &options(Toolkit::Plain, Protocol::Ope));
-    assert_eq!(problems.len(), 2, "{problems:?}");
+    assert_eq!(problems.len(), 3, "{problems:?}");
     assert!(problems[0].starts_with("Stranger: no ground truth"), "{problems:?}");
-    assert!(problems[1].starts_with("B, Deer: no result (seed 0)"), "{problems:?}");
+    assert!(
+        problems[1].starts_with("A, Deer: the result has 58 rows and the ground truth 60"),
+        "{problems:?}"
+    );
+    assert!(problems[2].starts_with("B, Deer: no result (seed 0)"), "{problems:?}");
+    let accepting = ScoreOptions { accept_lengths: true, ..options(Toolkit::Plain, Protocol::Ope) };
+    assert_eq!(scored(root.path(), &names, &accepting).1.len(), 2);
     assert_eq!(table.trackers.iter().map(|one| one.scored).collect::<Vec<_>>(), [2, 1]);
     let (table, problems) = scored(root.path(), &names, &options(Toolkit::Pysot, Protocol::Ope));
     assert!(problems.iter().any(|text| text.contains("A, Deer: pysot would fail")), "{problems:?}");

@@ -92,6 +92,11 @@ impl Identity {
     /// Writes `run.json` if there is none, else checks that it is of the same.
     pub(super) fn claim(&self, folder: &Path, machine: &Machine) -> Result<(), StoreError> {
         let path = folder.join(FILE);
+        // In this order: `run.json` is written before any result, so another shard's is there if its results are.
+        if has_results(folder) && !path.exists() {
+            let what = "unknown parameters (there is no run.json)".to_owned();
+            return Err(StoreError::OtherRun { path: folder.to_owned(), what });
+        }
         let run = RunFile { identity: self.clone(), machine: machine.clone() };
         let text = serde_json::to_string_pretty(&run)
             .map_err(|error| StoreError::BadRunFile { path: path.clone(), problem: error.to_string() })?;
@@ -127,6 +132,12 @@ impl Identity {
 }
 
 const FILE: &str = "run.json";
+
+/// Whether a tracker's folder has that of a seed.
+fn has_results(folder: &Path) -> bool {
+    let is_seed = |entry: fs::DirEntry| entry.file_name().to_string_lossy().starts_with("seed_");
+    fs::read_dir(folder).is_ok_and(|entries| entries.flatten().any(is_seed))
+}
 
 impl Machine {
     /// This machine.

@@ -46,6 +46,23 @@ fn results_stand_where_the_layout_says_with_every_digit() {
 }
 
 #[test]
+fn parameters_of_many_digits_are_the_same_when_they_are_read_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let store = Store::new(folder.path());
+    let numbers: Vec<f64> = (1..500).map(|number| 1e3 / f64::from(number).powi(3)).collect();
+    let identity = Identity::new(
+        "infopart",
+        "infopart 1".into(),
+        serde_json::json!({ "numbers": numbers }),
+        Protocol::Ope,
+        ShiftRules::Matlab,
+    );
+    for _ in 0..2 {
+        store.claim(&identity, &Machine::here(1, 1)).unwrap();
+    }
+}
+
+#[test]
 fn a_folder_belongs_to_one_set_of_parameters_and_one_version() {
     let folder = tempfile::tempdir().unwrap();
     let store = Store::new(folder.path());

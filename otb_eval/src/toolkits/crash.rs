@@ -61,3 +61,16 @@ pub enum Crash {
         found: &'static str,
     },
 }
+
+impl Crash {
+    /// What a toolkit fails on, without the place.
+    pub const fn cause(&self) -> &'static str {
+        match self {
+            Self::Lengths { .. } => "the result has not as many rows as the ground truth",
+            Self::BadBox { .. } => "a box of the result has a NaN or a negative side",
+            Self::NanTruth { .. } => "a NaN in the ground truth",
+            Self::NoArea { .. } => "result and ground truth have no area in the same frame",
+            Self::Separators { .. } => "its reader cannot tell the result's numbers apart",
+        }
+    }
+}

@@ -1,0 +1,197 @@
+//! Layouts of text files.
+
+use std::{
+    fmt::Write as _,
+    fs,
+    path::{Path, PathBuf},
+};
+
+use super::{ConvertError, Layout, OutputFile, Track, in_the_benchmarks_spelling, name_with_seed};
+use crate::{
+    protocol::{Protocol, SHIFTS},
+    results::{Results, ResultsError, SeedResults},
+    runner::stem,
+};
+
+/// The name of pytracking's parameters where nothing else is known.
+const DEFAULT_PARAM: &str = "default";
+
+pub(super) fn read(
+    layout: Layout,
+    path: &Path,
+    problems: &mut Vec<ConvertError>,
+) -> Result<Vec<Track>, ConvertError> {
+    let mut tracks = Vec::new();
+    match layout {
+        Layout::Got10k => {
+            let versions: Vec<PathBuf> =
+                folders(path)?.into_iter().filter(|folder| name_of(folder).starts_with("OTB")).collect();
+            let roots = if versions.is_empty() { vec![path.to_owned()] } else { versions };
+            for root in roots {
+                tracks.extend(of_protocol(&root, Protocol::Ope, problems)?);
+            }
+        }
+        Layout::Pytracking => {
+            for folder in folders(path)? {
+                if folders(&folder)?.is_empty() {
+                    return Err(ConvertError::Nothing { path: path.to_owned(), layout });
+                }
+                for mut track in of_protocol(&folder, Protocol::Ope, problems)? {
+                    let (param, seed) = param_and_run(&track.tracker);
+                    let tracker = name_of(&folder);
+                    track.tracker =
+                        if param == DEFAULT_PARAM { tracker } else { format!("{tracker}_{param}") };
+                    track.seed = seed;
+                    tracks.push(track);
+                }
+            }
+        }
+        Layout::Run | Layout::Flat | Layout::Pysot | Layout::Jwlim => {
+            for protocol in Results::protocols(path)? {
+                tracks.extend(of_protocol(path, protocol, problems)?);
+            }
+        }
+    }
+    Ok(tracks)
+}
+
+/// `PARAM_RRR`: the parameters' name and the number of the run.
+fn param_and_run(folder: &str) -> (&str, u64) {
+    let run = |digits: &str| (digits.len() == 3).then(|| digits.parse().ok()).flatten();
+    match folder.rsplit_once('_').and_then(|(param, digits)| Some((param, run(digits)?))) {
+        Some((param, run)) => (param, run),
+        None => (folder, 0),
+    }
+}
+
+fn of_protocol(
+    path: &Path,
+    protocol: Protocol,
+    problems: &mut Vec<ConvertError>,
+) -> Result<Vec<Track>, ConvertError> {
+    let mut tracks = Vec::new();
+    for tracker in Results::open(path, protocol)?.trackers {
+        for seed in &tracker.seeds {
+            for file in seed.stems() {
+                let (sequence, label) = split(file, protocol);
+                match track_of(seed, &sequence, label.as_deref()) {
+                    Ok((rows, seconds)) => tracks.push(Track {
+                        tracker: tracker.name.clone(),
+                        protocol,
+                        seed: seed.seed,
+                        sequence: in_the_benchmarks_spelling(&sequence),
+                        label,
+                        rows,
+                        seconds,
+                    }),
+                    Err(problem) => problems.push(problem.into()),
+                }
+            }
+            problems.extend(seed.failures().map(|(stem, reason)| ConvertError::File {
+                path: path.join(&tracker.name).join(stem),
+                problem: format!("the job failed, so there is nothing to convert: {reason}"),
+            }));
+        }
+    }
+    Ok(tracks)
+}
+
+type Boxes = Vec<infopart::geometry::Rect>;
+
+fn track_of(
+    seed: &SeedResults,
+    sequence: &str,
+    label: Option<&str>,
+) -> Result<(Boxes, Option<Vec<f64>>), ResultsError> {
+    let rows = seed.read(sequence, label).transpose()?.map(|file| file.rows).unwrap_or_default();
+    Ok((rows, seed.read_seconds(sequence, label).transpose()?))
+}
+
+/// `SEQ_SEGMENT` into both.
+fn split(stem: &str, protocol: Protocol) -> (String, Option<String>) {
+    let number = |end: &str| end.len() == 2 && end.bytes().all(|byte| byte.is_ascii_digit());
+    let found = match protocol {
+        Protocol::Ope => None,
+        Protocol::Tre => stem.rsplit_once('_').filter(|(_, end)| number(end)),
+        Protocol::Sre => SHIFTS.iter().find_map(|shift| {
+            let sequence = stem.strip_suffix(shift.name())?.strip_suffix('_')?;
+            Some((sequence, shift.name()))
+        }),
+    };
+    match found {
+        Some((sequence, label)) => (sequence.to_owned(), Some(label.to_owned())),
+        None => (stem.to_owned(), None),
+    }
+}
+
+pub(super) fn files(layout: Layout, tracks: &[Track]) -> Vec<OutputFile> {
+    let mut files = Vec::new();
+    for track in tracks {
+        let tracker_folder = tracker_folder(layout, track, tracks);
+        let folder = match layout {
+            Layout::Run => tracker_folder.join(format!("seed_{}", track.seed)),
+            _ => tracker_folder.clone(),
+        };
+        let stem = stem(&layout.spelled(&track.sequence), track.label.as_deref());
+        let file = |path: PathBuf, text: String, has_boxes: bool| OutputFile {
+            tracker_folder: tracker_folder.clone(),
+            path,
+            text,
+            has_boxes,
+        };
+        if let Some(seconds) = track.seconds.as_ref().filter(|_| layout != Layout::Pysot) {
+            let times = if layout == Layout::Got10k { folder.join("times") } else { folder.clone() };
+            files.push(file(times.join(format!("{stem}_time.txt")), lines_of(seconds), false));
+        }
+        let separator = if layout == Layout::Pytracking { '\t' } else { ',' };
+        files.push(file(folder.join(format!("{stem}.txt")), rows_of(track, separator), true));
+    }
+    files
+}
+
+fn tracker_folder(layout: Layout, track: &Track, tracks: &[Track]) -> PathBuf {
+    let has_runs = name_with_seed(track, tracks) != track.tracker;
+    match layout {
+        Layout::Run => PathBuf::from(track.protocol.name()).join(&track.tracker),
+        Layout::Got10k => PathBuf::from("OTB2015").join(name_with_seed(track, tracks)),
+        Layout::Pytracking if has_runs => {
+            PathBuf::from(&track.tracker).join(format!("{DEFAULT_PARAM}_{:03}", track.seed))
+        }
+        Layout::Pytracking => PathBuf::from(&track.tracker).join(DEFAULT_PARAM),
+        Layout::Flat | Layout::Pysot | Layout::Jwlim => PathBuf::from(name_with_seed(track, tracks)),
+    }
+}
+
+fn rows_of(track: &Track, separator: char) -> String {
+    let mut text = String::new();
+    for row in &track.rows {
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "{}{separator}{}{separator}{}{separator}{}", row.x, row.y, row.w, row.h);
+    }
+    text
+}
+
+fn lines_of(seconds: &[f64]) -> String {
+    seconds.iter().map(|second| format!("{second:.8}\n")).collect()
+}
+
+/// Sorted, so that nothing depends on the file system's order.
+fn folders(path: &Path) -> Result<Vec<PathBuf>, ConvertError> {
+    let io_error = |source| ConvertError::Io { path: path.to_owned(), source };
+    if !path.is_dir() {
+        return Err(ResultsError::Missing { path: path.to_owned() }.into());
+    }
+    let mut folders = Vec::new();
+    for entry in fs::read_dir(path).map_err(io_error)? {
+        let entry = entry.map_err(io_error)?.path();
+        if entry.is_dir() {
+            folders.push(entry);
+        }
+    }
+    folders.sort();
+    Ok(folders)
+}
+
+fn name_of(path: &Path) -> String {
+    path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
+}
