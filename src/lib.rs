@@ -35,6 +35,7 @@
 
 pub mod bayes;
 pub mod boosting;
+pub mod experiments;
 pub mod features;
 pub mod frame;
 pub mod geometry;
