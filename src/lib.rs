@@ -36,6 +36,7 @@
 pub mod bayes;
 pub mod boosting;
 pub mod correlation;
+pub mod experiments;
 pub mod features;
 pub mod frame;
 pub mod geometry;
