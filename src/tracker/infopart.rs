@@ -5,8 +5,8 @@
 //! 2. sample the part and its surroundings (Algorithm 5), train the classifier F (Algorithm 4), and let the correlation
 //!    filter learn,
 //! 3. in each later frame:
-//!    a. compute integral images around the target and correlate; move the particles by the walk or to where the filter peaks,
-//!       weigh and resample them (Algorithm 1),
+//!    a. compute integral images around the target and correlate, move the particles by the walk or to the filter's peak,
+//!    weigh and resample them (Algorithm 1),
 //!    b. estimate the part from the sets and recover the whole box from it,
 //!    c. judge the estimate,
 //!    d. if it is due and the estimate is trusted, sample the new part and retrain F,
