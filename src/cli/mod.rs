@@ -3,6 +3,7 @@
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
+use infopart::program;
 
 mod background;
 mod config;
@@ -11,6 +12,7 @@ mod demo_folder;
 mod first_box;
 mod outputs;
 mod parameters;
+mod several;
 mod track;
 mod values;
 
@@ -59,7 +61,7 @@ pub fn main() -> ExitCode {
         Command::Background(args) => background::background(&args),
         Command::Config(args) => config::config(&args),
     };
-    infopart::program::report(outcome)
+    program::report_with(outcome, |error| error.is::<several::Interrupted>().then_some(program::INTERRUPTED))
 }
 
 #[cfg(test)]
