@@ -9,6 +9,7 @@ mod background;
 mod config;
 mod demo;
 mod demo_folder;
+mod estimate;
 mod first_box;
 mod outputs;
 mod parameters;
@@ -51,6 +52,9 @@ enum Command {
     /// Print every parameter with its default, meaning and unit, as a TOML that --config takes
     #[command(after_help = config::EXAMPLES)]
     Config(config::ConfigArgs),
+    /// Compare state estimators on a simulated oscillator; needs no data
+    #[command(after_help = estimate::EXAMPLES)]
+    Estimate(estimate::EstimateArgs),
 }
 
 /// Runs the program on its command line.
@@ -60,6 +64,7 @@ pub fn main() -> ExitCode {
         Command::Demo(args) => demo::demo(&args),
         Command::Background(args) => background::background(&args),
         Command::Config(args) => config::config(&args),
+        Command::Estimate(args) => estimate::estimate(&args),
     };
     program::report_with(outcome, |error| error.is::<several::Interrupted>().then_some(program::INTERRUPTED))
 }

@@ -6,7 +6,7 @@ use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 
 use crate::{
-    bayes::{Covariance, Transition},
+    bayes::Transition,
     tracker::motion::{Limits, PartState},
 };
 
@@ -61,35 +61,6 @@ impl Velocity {
     }
 }
 
-/// The regularised filter's Gaussian kernel: the particles' covariance at Silverman's bandwidth, as a lower triangle.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Kernel {
-    x: f64,
-    y_of_x: f64,
-    y: f64,
-    w: f64,
-}
-
-impl Kernel {
-    /// The kernel for `particles` particles of this covariance; the width counts as a dimension if it varies.
-    pub fn new(covariance: &Covariance<3>, particles: usize) -> Self {
-        let dimensions: f64 = if covariance[(2, 2)] > 0.0 { 3.0 } else { 2.0 };
-        let exponent = 1.0 / (dimensions + 4.0);
-        let bandwidth = (4.0 / (dimensions + 2.0)).powf(exponent) * (particles as f64).powf(-exponent);
-        let root = |square: f64| square.max(0.0).sqrt();
-        let x = root(covariance[(0, 0)]);
-        let y_of_x = if x > 0.0 { covariance[(1, 0)] / x } else { 0.0 };
-        let y = root(covariance[(1, 1)] - y_of_x * y_of_x);
-        let w = root(covariance[(2, 2)]);
-        Self { x: bandwidth * x, y_of_x: bandwidth * y_of_x, y: bandwidth * y, w: bandwidth * w }
-    }
-
-    fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> PartState {
-        let [a, b, c]: [f64; 3] = std::array::from_fn(|_| rng.sample(StandardNormal));
-        PartState::new(self.x * a, self.y_of_x * a + self.y * b, self.w * c)
-    }
-}
-
 /// The particles' step. Steps that leave the limits end on them.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct VelocityWalk {
@@ -99,21 +70,20 @@ pub(super) struct VelocityWalk {
     pub velocity: (f64, f64),
     /// Standard deviations of e in x, y and w, pixels.
     pub sigma: PartState,
-    /// Moves the particles before the step, if they were resampled and the filter is regularised.
-    pub kernel: Option<Kernel>,
     /// Where the target may be.
     pub limits: Limits,
 }
 
 impl Transition<3> for VelocityWalk {
     fn sample<R: Rng + ?Sized>(&self, previous: &PartState, rng: &mut R) -> PartState {
-        let kernel = self.kernel.map_or_else(PartState::zeros, |kernel| kernel.sample(rng));
         let noise: PartState = self.sigma.map(|sigma| sigma * rng.sample::<f64, _>(StandardNormal));
-        let width = kernel[2] + noise[2];
         // A step in width keeps the centre.
-        let drift =
-            PartState::new(self.velocity.0 - width / 2.0, self.velocity.1 - self.aspect * width / 2.0, 0.0);
-        self.limits.confine(previous + kernel + noise + drift, self.aspect)
+        let drift = PartState::new(
+            self.velocity.0 - noise[2] / 2.0,
+            self.velocity.1 - self.aspect * noise[2] / 2.0,
+            0.0,
+        );
+        self.limits.confine(previous + noise + drift, self.aspect)
     }
 
     fn log_density(&self, next: &PartState, previous: &PartState) -> f64 {
@@ -144,16 +114,11 @@ mod tests {
     }
 
     #[test]
-    fn particles_step_by_velocity_noise_and_kernel() {
-        let covariance = Covariance::<3>::new(16.0, 6.0, 0.0, 6.0, 9.0, 0.0, 0.0, 0.0, 0.0);
-        let kernel = Kernel::new(&covariance, 300);
-        // Silverman's bandwidth in two dimensions is N^(-1/6).
-        let scale = 300f64.powf(-1.0 / 3.0);
+    fn particles_step_by_velocity_and_noise() {
         let walk = VelocityWalk {
             aspect: 2.0,
             velocity: (5.0, -2.0),
-            sigma: PartState::new(1.0, 2.0, 0.0),
-            kernel: Some(kernel),
+            sigma: PartState::new(1.0, 2.0, 0.5),
             limits: Limits { frame_width: 1e4, frame_height: 1e4, narrowest: 1.0, widest: 1e3 },
         };
         let start = PartState::new(500.0, 600.0, 50.0);
@@ -167,7 +132,8 @@ mod tests {
             square.iter_mut().zip(products).for_each(|(sum, product)| *sum += product / n);
         }
         assert!(mean.norm() < 0.05, "{mean}");
-        let expected = [1.0 + 16.0 * scale, 6.0 * scale, 4.0 + 9.0 * scale];
+        // A step in width of deviation 0.5 moves the corner by half of it, and by as much as the height grows.
+        let expected = [1.0 + 0.0625, 0.125, 4.0 + 0.25];
         for (found, expected) in square.iter().zip(expected) {
             assert!((found - expected).abs() < 0.1, "{square:?} {expected}");
         }

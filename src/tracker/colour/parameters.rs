@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     background::BackgroundParameters,
-    bayes::{particle::ParticleFilterOptions, resampling::Resampling},
+    bayes::{kernel::Kernel, particle::ParticleFilterOptions, resampling::Resampling},
     features::colour_histogram::Normalisation,
     tracker::ParameterError,
 };
@@ -186,6 +186,7 @@ impl ColourParameters {
                 _ => Resampling::Systematic,
             },
             resampling_threshold: if never { 0.0 } else { self.resampling_threshold },
+            regularisation: (self.resampling == ColourResampling::Regularised).then_some(Kernel::Gaussian),
             ..ParticleFilterOptions::default()
         }
     }

@@ -22,8 +22,8 @@ use crate::{
 
 use super::{
     appearance::{Appearance, FrameObservation},
-    motion::{Kernel, Velocity, VelocityWalk},
-    parameters::{ColourParameters, ColourResampling},
+    motion::{Velocity, VelocityWalk},
+    parameters::ColourParameters,
 };
 
 /// Cells that a search region may have at most.
@@ -49,7 +49,6 @@ pub(super) struct Target {
     /// Frames since `init`.
     frame: u64,
     particles: ParticleFilter<3>,
-    kernel: Option<Kernel>,
     pub velocity: Velocity,
     pub appearance: Appearance,
     /// Whether the appearance is that of the foreground alone.
@@ -91,7 +90,6 @@ impl Target {
             limits: Limits::around(&target, frame.width(), frame.height()),
             frame: 0,
             particles: ParticleFilter::new(states.collect(), parameters.filter_options()),
-            kernel: None,
             velocity: Velocity::new(parameters),
             appearance: Appearance::of(integrals, &target, parameters.halves),
             of_foreground: false,
@@ -151,7 +149,6 @@ impl Target {
                 parameters.noise_y * target.h,
                 parameters.noise_w * target.w,
             ),
-            kernel: self.kernel.take(),
             limits: self.limits,
         };
         self.particles.predict(&walk, &mut stream(parameters.seed, self.frame, Use::Particles(self.number)));
@@ -210,9 +207,6 @@ impl Target {
         // Past the prediction's draws: the frame's second half of the stream numbers.
         let mut rng = stream(parameters.seed, self.frame | 1 << 40, Use::Particles(self.number));
         let found = self.particles.correct(&observation, &mut rng);
-        if found.resampled && parameters.resampling == ColourResampling::Regularised {
-            self.kernel = Some(Kernel::new(&found.covariance, parameters.particles));
-        }
         let target = box_of(&found.mean, self.aspect);
         let confidence = self.appearance.similarity(integrals, &target, Normalisation::L2);
         self.estimate = Estimate::new(target, target, confidence, status(confidence));

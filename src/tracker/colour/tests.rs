@@ -1,6 +1,5 @@
 use super::*;
 use crate::{
-    features::colour_histogram::Normalisation,
     frame::{Frame, PixelFormat},
     tracker::Status,
 };
@@ -82,17 +81,6 @@ fn without_resampling_the_weights_gather_on_few_particles() {
     });
     sizes[0] *= 5.0;
     assert!(sizes[0] < sizes[1], "{sizes:?}");
-}
-
-#[test]
-fn under_l1_the_weights_are_flatter() {
-    let share = |normalisation| {
-        let parameters = ColourParameters { normalisation, ..Default::default() };
-        let mut tracker = ColourTracker::new(parameters.check().unwrap());
-        tracker.init(scene(&[walk(0)], 1.0).view(), at(walk(0))).unwrap();
-        tracker.update(scene(&[walk(1)], 1.0).view()).unwrap().effective_sample_size / 300.0
-    };
-    assert!(share(Normalisation::L1) > share(Normalisation::L2) + 0.05);
 }
 
 #[test]
