@@ -3,7 +3,9 @@
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
+use infopart::program;
 
+mod background;
 mod config;
 mod demo;
 mod demo_folder;
@@ -11,6 +13,7 @@ mod estimate;
 mod first_box;
 mod outputs;
 mod parameters;
+mod several;
 mod track;
 mod values;
 
@@ -43,6 +46,9 @@ enum Command {
     /// Track a target from its box in the first frame
     #[command(after_help = track::EXAMPLES)]
     Track(Box<track::TrackArgs>),
+    /// Learn a static camera's background and show what moves: masks, blobs, a picture
+    #[command(after_help = background::EXAMPLES)]
+    Background(background::BackgroundArgs),
     /// Print every parameter with its default, meaning and unit, as a TOML that --config takes
     #[command(after_help = config::EXAMPLES)]
     Config(config::ConfigArgs),
@@ -56,10 +62,11 @@ pub fn main() -> ExitCode {
     let outcome = match Cli::parse().command {
         Command::Track(args) => track::track(&args),
         Command::Demo(args) => demo::demo(&args),
+        Command::Background(args) => background::background(&args),
         Command::Config(args) => config::config(&args),
         Command::Estimate(args) => estimate::estimate(&args),
     };
-    infopart::program::report(outcome)
+    program::report_with(outcome, |error| error.is::<several::Interrupted>().then_some(program::INTERRUPTED))
 }
 
 #[cfg(test)]

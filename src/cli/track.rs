@@ -5,12 +5,15 @@ use std::{path::PathBuf, sync::Arc};
 use anyhow::{Context, Result};
 use clap::Args;
 use infopart::{
-    geometry::{Origin, Rect},
+    geometry::{Origin, Rect, Region},
     output::{Summary, tracker_title},
     program::{self, BadInput},
     run::{RunReport, run},
     sequence::{self, OpenOptions},
-    tracker::{CheckedParameters, InfoPart, Tracker},
+    tracker::{
+        CheckedParameters, InfoPart, Tracker,
+        colour::{CheckedColourParameters, ColourTracker},
+    },
 };
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
@@ -18,7 +21,8 @@ use super::{
     first_box::FirstBox,
     outputs::Outputs,
     parameters::ParameterArgs,
-    values::{Format, parse_box, parse_count, parse_origin},
+    several::{SeveralReport, track_several},
+    values::{Format, TrackerName, parse_box, parse_count, parse_origin},
 };
 
 pub const EXAMPLES: &str = "\
@@ -28,6 +32,7 @@ Examples:
   infopart track video.mp4 --init 120,80,40,110  a video, the first box given
   infopart track 'shots/*.png' --init 5,9,32,80 --out a.csv --annotate seen.mp4
   infopart track Crossing --region whole --json --quiet > /dev/null
+  infopart track ships.avi --tracker colour --init 9,40,60,25 --init 200,52,48,20 --out ships.txt
 
 Rows: one a frame from the first tracked on, which holds the first box. A lost target has a row too: the best guess.
 
@@ -41,6 +46,10 @@ of each frame is in csv and jsonl rows.
 
 Parameters: --config over --preset, and --region, --particles and --seed over both.
 
+Trackers: infopart, or colour, a particle filter on colour histograms. colour takes --init several times: the targets \
+are followed together, each with the occlusions by the others in mind, and the rows of target K go to FILE.K.txt for \
+--out FILE.txt. Its parameters are those of `infopart config --tracker colour`.
+
 Exit codes:
   0    success
   1    internal failure
@@ -51,10 +60,14 @@ Exit codes:
 pub struct TrackArgs {
     /// An OTB folder (img/ and groundtruth_rect.txt), a folder or a quoted glob of images (jpg, png, bmp),
     /// or a video (needs ffmpeg)
-    input: String,
-    /// The target's box in the first frame: left, top, width, height in pixels [default: the ground truth's]
+    pub input: String,
+    /// What tracks
+    #[arg(long, value_name = "infopart|colour", default_value = "infopart")]
+    tracker: TrackerName,
+    /// The target's box in the first frame: left, top, width, height in pixels; with --tracker colour it may be
+    /// given several times, once a target [default: the ground truth's]
     #[arg(long, value_name = "X,Y,W,H", value_parser = parse_box, allow_hyphen_values = true)]
-    init: Option<Rect>,
+    init: Vec<Rect>,
     /// Which target of an OTB folder that has several: the K of groundtruth_rect.K.txt
     #[arg(long, value_name = "K", value_parser = parse_count)]
     target: Option<usize>,
@@ -93,19 +106,38 @@ pub struct TrackArgs {
     pub quiet: bool,
 }
 
+/// The tracker that the flags choose, with its parameters.
+enum Chosen {
+    InfoPart(CheckedParameters),
+    Colour(CheckedColourParameters),
+}
+
 pub fn track(args: &TrackArgs) -> Result<()> {
-    let parameters = args.parameters.resolve()?;
+    let chosen = args.chosen()?;
     let pool = args.threads.map(thread_pool).transpose()?;
     let mut sequence = sequence::open(&args.input, &args.open_options())?;
-    let first = FirstBox::find(args.init, &args.input, &sequence)?;
+    let init = match (args.init.as_slice(), &chosen) {
+        ([_, _, ..], Chosen::Colour(parameters)) => {
+            let report = track_several(args, &args.init, sequence, parameters.clone(), pool)?;
+            tell_several(args, &report);
+            return Ok(());
+        }
+        ([_, _, ..], Chosen::InfoPart(_)) => {
+            let message =
+                "--init is given several times; InfoPart follows one target: give one, or --tracker colour";
+            return Err(BadInput(message.to_owned()).into());
+        }
+        (given, _) => given.first().copied(),
+    };
+    let first = FirstBox::find(init, &args.input, &sequence)?;
     let mut outputs = Outputs::open(args, sequence.origin, first.as_given, sequence.source.remaining())?;
     let interrupted = program::watch().context("Ctrl-C cannot be watched for")?;
     let threads = pool.as_ref().map_or_else(rayon::current_num_threads, |pool| pool.current_num_threads());
-    let mut tracker = start_tracker(parameters.clone(), pool);
+    let mut tracker = chosen.start(pool);
     let report = run(
         sequence.source.as_mut(),
         &sequence.ground_truth,
-        &mut tracker,
+        tracker.as_mut(),
         first.in_frame,
         &mut outputs.observers(),
         interrupted,
@@ -114,10 +146,32 @@ pub fn track(args: &TrackArgs) -> Result<()> {
         Some(refusal) => refusal.into(),
         None => outputs.explain(error),
     })?;
-    tell_summary(args, summary(args, sequence.name, tracker.name(), &parameters, threads, report))
+    tell_summary(args, summary(args, sequence.name, &chosen, threads, report))
+}
+
+impl Chosen {
+    fn start(&self, pool: Option<Arc<ThreadPool>>) -> Box<dyn Tracker> {
+        match (self, pool) {
+            (Self::InfoPart(parameters), Some(pool)) => {
+                Box::new(InfoPart::with_pool(parameters.clone(), pool))
+            }
+            (Self::InfoPart(parameters), None) => Box::new(InfoPart::new(parameters.clone())),
+            (Self::Colour(parameters), Some(pool)) => {
+                Box::new(ColourTracker::with_pool(parameters.clone(), pool))
+            }
+            (Self::Colour(parameters), None) => Box::new(ColourTracker::new(parameters.clone())),
+        }
+    }
 }
 
 impl TrackArgs {
+    fn chosen(&self) -> Result<Chosen> {
+        Ok(match self.tracker {
+            TrackerName::Infopart => Chosen::InfoPart(self.parameters.resolve()?),
+            TrackerName::Colour => Chosen::Colour(self.parameters.resolve_colour()?),
+        })
+    }
+
     fn open_options(&self) -> OpenOptions {
         OpenOptions { target: self.target, start: self.start, end: self.end, origin: self.origin }
     }
@@ -129,29 +183,26 @@ fn thread_pool(threads: usize) -> Result<Arc<ThreadPool>> {
     Ok(Arc::new(pool))
 }
 
-fn start_tracker(parameters: CheckedParameters, pool: Option<Arc<ThreadPool>>) -> InfoPart {
-    match pool {
-        Some(pool) => InfoPart::with_pool(parameters, pool),
-        None => InfoPart::new(parameters),
-    }
-}
-
 fn summary(
     args: &TrackArgs,
     sequence: String,
-    tracker: &str,
-    parameters: &CheckedParameters,
+    chosen: &Chosen,
     threads: usize,
     report: RunReport,
 ) -> Summary {
-    Summary {
-        sequence,
-        tracker: tracker_title(tracker, parameters.region),
-        region: parameters.region,
-        preset: args.parameters.preset.clone(),
-        seed: parameters.seed,
-        threads,
-        report,
+    let (tracker, region, seed) = match chosen {
+        Chosen::InfoPart(parameters) => {
+            (tracker_title("infopart", parameters.region), parameters.region, parameters.seed)
+        }
+        Chosen::Colour(parameters) => ("colour".to_owned(), Region::Whole, parameters.seed),
+    };
+    Summary { sequence, tracker, region, preset: args.parameters.preset.clone(), seed, threads, report }
+}
+
+fn tell_several(args: &TrackArgs, report: &SeveralReport) {
+    if !args.quiet && !args.json {
+        let files: Vec<_> = report.files.iter().map(|file| file.display().to_string()).collect();
+        eprintln!("{} frames, {} targets: {}", report.frames, files.len(), files.join(", "));
     }
 }
 
