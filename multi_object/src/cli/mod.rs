@@ -1,0 +1,68 @@
+//! The command line: one file a subcommand, errors told in one place.
+
+use std::{path::Path, process::ExitCode};
+
+use anyhow::{Error, Result};
+use clap::{Parser, Subcommand};
+use infopart::{
+    output::{Destination, PartialFile, StandardOutput},
+    program::{self, BAD_INPUT},
+};
+use multi_object::motchallenge::MotError;
+
+mod score;
+mod text_table;
+
+const EXAMPLES: &str = "\
+Examples:
+  mot score gt.txt result.txt
+Exit codes:
+  0    success
+  1    internal failure
+  2    bad input: a flag, a file or a row
+  130  interrupted with Ctrl-C";
+
+/// Tracks many objects, and scores tracks as the usual toolkits do.
+#[derive(Debug, Parser)]
+#[command(name = "mot", version, max_term_width = 120, after_help = EXAMPLES)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Score tracks against the ground truth: CLEAR-MOT, identity scores, HOTA
+    #[command(after_help = score::EXAMPLES)]
+    Score(score::ScoreArgs),
+}
+
+/// Runs the program on its command line.
+pub fn main() -> ExitCode {
+    let outcome = match Cli::parse().command {
+        Command::Score(args) => score::score(&args),
+    };
+    program::report_with(outcome, code_of)
+}
+
+fn code_of(error: &Error) -> Option<u8> {
+    error.is::<MotError>().then_some(BAD_INPUT)
+}
+
+/// Writes a file whole, or prints where there is none.
+fn deliver(path: Option<&Path>, text: &str) -> Result<()> {
+    let mut destination: Box<dyn Destination> = match path {
+        Some(path) => Box::new(PartialFile::create(path)?),
+        None => Box::new(StandardOutput::new()),
+    };
+    destination.write_all(text.as_bytes()).map_err(|error| destination.name_error(error))?;
+    Ok(destination.complete()?)
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn the_command_line_is_consistent() {
+        <super::Cli as clap::CommandFactory>::command().debug_assert();
+    }
+}
