@@ -4,10 +4,15 @@
 //! p(y_k | x_k). The traits here are what every filter is built on; a particle filter needs no more of them
 //! than to draw and to weigh.
 
+mod error;
+pub mod gaussian;
+pub mod kalman;
 pub mod particle;
 pub mod random_walk;
 pub mod resampling;
 pub mod weights;
+
+pub use error::FilterError;
 
 use nalgebra::{SMatrix, SVector};
 use rand::Rng;
