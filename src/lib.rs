@@ -33,6 +33,7 @@
 //! [observers](output::Observer).
 #![deny(missing_docs)]
 
+pub mod background;
 pub mod bayes;
 pub mod boosting;
 pub mod features;
