@@ -10,11 +10,14 @@ use infopart::{
 };
 use multi_object::motchallenge::MotError;
 
+mod filter;
 mod score;
+mod sort;
 mod text_table;
 
 const EXAMPLES: &str = "\
 Examples:
+  mot sort det.txt --out result.txt
   mot score gt.txt result.txt
 Exit codes:
   0    success
@@ -35,12 +38,16 @@ enum Command {
     /// Score tracks against the ground truth: CLEAR-MOT, identity scores, HOTA
     #[command(after_help = score::EXAMPLES)]
     Score(score::ScoreArgs),
+    /// Track given detections (SORT)
+    #[command(after_help = sort::EXAMPLES)]
+    Sort(sort::SortArgs),
 }
 
 /// Runs the program on its command line.
 pub fn main() -> ExitCode {
     let outcome = match Cli::parse().command {
         Command::Score(args) => score::score(&args),
+        Command::Sort(args) => sort::sort(&args),
     };
     program::report_with(outcome, code_of)
 }
