@@ -9,6 +9,12 @@ use multi_object::motion::{FilterKind, FilterOptions};
 pub enum FilterArg {
     /// Linear Kalman filter
     Kalman,
+    /// Extended Kalman filter
+    Ekf,
+    /// Unscented Kalman filter
+    Ukf,
+    /// Particle filter
+    Pf,
 }
 
 #[derive(Debug, Args)]
@@ -28,6 +34,9 @@ impl FilterArgs {
     pub fn kind(&self) -> FilterKind {
         match self.filter {
             FilterArg::Kalman => FilterKind::Kalman,
+            FilterArg::Ekf => FilterKind::Ekf,
+            FilterArg::Ukf => FilterKind::Ukf,
+            FilterArg::Pf => FilterKind::Pf,
         }
     }
 

@@ -6,7 +6,7 @@ use anyhow::{Error, Result};
 use clap::{Parser, Subcommand};
 use infopart::{
     output::{Destination, PartialFile, StandardOutput},
-    program::{self, BAD_INPUT},
+    program::{self, BAD_INPUT, INTERRUPTED},
 };
 use multi_object::motchallenge::MotError;
 
@@ -14,9 +14,11 @@ mod filter;
 mod score;
 mod sort;
 mod text_table;
+mod track;
 
 const EXAMPLES: &str = "\
 Examples:
+  mot track view1.avi --out tracks.txt --annotate seen.mp4
   mot sort det.txt --out result.txt
   mot score gt.txt result.txt
 Exit codes:
@@ -38,6 +40,9 @@ enum Command {
     /// Score tracks against the ground truth: CLEAR-MOT, identity scores, HOTA
     #[command(after_help = score::EXAMPLES)]
     Score(score::ScoreArgs),
+    /// Track what moves before a static camera: background model, blobs, a Bayesian filter for each object
+    #[command(after_help = track::EXAMPLES)]
+    Track(track::TrackArgs),
     /// Track given detections (SORT)
     #[command(after_help = sort::EXAMPLES)]
     Sort(sort::SortArgs),
@@ -47,12 +52,23 @@ enum Command {
 pub fn main() -> ExitCode {
     let outcome = match Cli::parse().command {
         Command::Score(args) => score::score(&args),
+        Command::Track(args) => track::track(&args),
         Command::Sort(args) => sort::sort(&args),
     };
     program::report_with(outcome, code_of)
 }
 
+/// Ctrl-C, after the frame at hand.
+#[derive(Debug, thiserror::Error)]
+#[error("interrupted after {frames} frames; what was done is in FILE.partial")]
+struct Interrupted {
+    frames: u32,
+}
+
 fn code_of(error: &Error) -> Option<u8> {
+    if error.is::<Interrupted>() {
+        return Some(INTERRUPTED);
+    }
     error.is::<MotError>().then_some(BAD_INPUT)
 }
 

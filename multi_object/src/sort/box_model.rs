@@ -6,6 +6,7 @@ use infopart::{
         Covariance, FilterError, State,
         gaussian::{Gaussian, GaussianNoise},
         kalman::LinearModel,
+        model::{Dynamics, Sensor},
     },
     geometry::Rect,
 };
@@ -33,6 +34,28 @@ impl BoxModel {
             measurement: SMatrix::identity(),
             measurement_noise: GaussianNoise::diagonal(&State::from([1.0, 1.0, 10.0, 10.0]))?,
         }))
+    }
+}
+
+impl Dynamics<STATE> for BoxModel {
+    fn propagate(&self, state: &State<STATE>) -> State<STATE> {
+        let mut state = *state;
+        self.constrain(&mut state);
+        self.0.propagate(&state)
+    }
+
+    fn jacobian(&self, _: &State<STATE>) -> SMatrix<f64, STATE, STATE> {
+        self.0.transition
+    }
+}
+
+impl Sensor<STATE, MEASURED> for BoxModel {
+    fn measure(&self, state: &State<STATE>) -> State<MEASURED> {
+        self.0.measure(state)
+    }
+
+    fn jacobian(&self, _: &State<STATE>) -> SMatrix<f64, MEASURED, STATE> {
+        self.0.measurement
     }
 }
 
