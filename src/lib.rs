@@ -36,6 +36,7 @@
 pub mod background;
 pub mod bayes;
 pub mod boosting;
+pub mod experiments;
 pub mod features;
 pub mod frame;
 pub mod geometry;

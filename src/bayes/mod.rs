@@ -1,15 +1,21 @@
 //! Bayesian filtering of a hidden state, knowing nothing of images.
 //!
 //! A filter keeps p(x_k | y_1:k) for a hidden state x with a transition p(x_k | x_k-1) and an observation
-//! p(y_k | x_k). The traits here are what every filter is built on; a particle filter needs no more of them
-//! than to draw and to weigh.
+//! p(y_k | x_k). A particle filter needs no more than to draw and to weigh: [`Transition`], [`Observation`] and
+//! [`Proposal`]. The Kalman family needs functions and Gaussian noise: [`model::Dynamics`], [`model::Sensor`] and
+//! [`gaussian::GaussianNoise`], which [`model::Disturbed`] and [`model::Measured`] make into the former, so that every
+//! filter runs on one model.
 
 mod error;
+pub mod extended;
 pub mod gaussian;
 pub mod kalman;
+pub mod kernel;
+pub mod model;
 pub mod particle;
 pub mod random_walk;
 pub mod resampling;
+pub mod unscented;
 pub mod weights;
 
 pub use error::FilterError;

@@ -5,28 +5,37 @@
 //! 2. weigh: weight_i *= p(y | x_i) p(x_i | x_i,k-1) / q(x_i | x_i,k-1, y), as logarithms,
 //! 3. normalise, keeping the logarithm of the mean likelihood,
 //! 4. N_eff = 1 / sum(weight^2),
-//! 5. resample if N_eff < threshold * N_s, weights back to 1 / N_s,
+//! 5. resample if N_eff < threshold * N_s, weights back to 1 / N_s; a regularised filter then moves each copy by
+//!    h A e, with h the kernel's bandwidth, A A' the weighted covariance before resampling, e drawn from the kernel,
 //! 6. estimate the weighted mean and its covariance, before or after step 5.
 
 use rand::Rng;
 use rayon::prelude::*;
 
-use super::{Covariance, Observation, Proposal, State, Transition, resampling::Resampling, weights};
+use super::{
+    Covariance, FilterError, Observation, Proposal, State, Transition,
+    gaussian::semidefinite_factor,
+    kernel::Kernel,
+    resampling::{Resample, Resampling},
+    weights,
+};
 
 /// Particles that one thread weighs at a time.
 const CHUNK: usize = 16;
 
 /// How a particle filter normalises, resamples and estimates.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ParticleFilterOptions {
+pub struct ParticleFilterOptions<S = Resampling> {
     /// Scheme that draws the ancestors.
-    pub resampling: Resampling,
+    pub resampling: S,
     /// Resample when N_eff < `resampling_threshold` * N_s; 0 never, above 1 always.
     pub resampling_threshold: f64,
     /// Added to every weight before normalising, relative to the best particle's.
     pub epsilon: f64,
     /// Estimate after resampling, as the paper does, instead of before: same mean, more variance.
     pub estimate_after_resampling: bool,
+    /// Kernel that particles are drawn from after resampling (the regularised particle filter); `None` keeps copies.
+    pub regularisation: Option<Kernel>,
 }
 
 impl Default for ParticleFilterOptions {
@@ -36,6 +45,7 @@ impl Default for ParticleFilterOptions {
             resampling_threshold: 0.5,
             epsilon: 1e-20,
             estimate_after_resampling: false,
+            regularisation: None,
         }
     }
 }
@@ -57,8 +67,9 @@ pub struct ParticleEstimate<const N: usize> {
 
 /// Weighted particles that stand for p(x_k | y_1:k).
 #[derive(Debug, Clone)]
-pub struct ParticleFilter<const N: usize> {
-    options: ParticleFilterOptions,
+pub struct ParticleFilter<const N: usize, S = Resampling> {
+    options: ParticleFilterOptions<S>,
+    on_one_thread: bool,
     states: Vec<State<N>>,
     weights: Vec<f64>,
     log_weights: Vec<f64>,
@@ -67,24 +78,42 @@ pub struct ParticleFilter<const N: usize> {
     ancestors: Vec<usize>,
 }
 
-impl<const N: usize> ParticleFilter<N> {
+impl<const N: usize, S: Resample> ParticleFilter<N, S> {
     /// Starts from particles of equal weight.
     ///
     /// # Panics
     /// If there is no particle.
-    pub fn new(states: Vec<State<N>>, options: ParticleFilterOptions) -> Self {
-        assert!(!states.is_empty(), "a particle filter needs at least one particle");
+    pub fn new(states: Vec<State<N>>, options: ParticleFilterOptions<S>) -> Self {
+        Self::try_new(states, options).expect("a particle filter needs at least one particle")
+    }
+
+    /// [`new`](Self::new) for particles that may be none.
+    ///
+    /// # Errors
+    /// [`FilterError::NoParticles`] if there is no particle.
+    pub fn try_new(states: Vec<State<N>>, options: ParticleFilterOptions<S>) -> Result<Self, FilterError> {
         let n = states.len();
+        if n == 0 {
+            return Err(FilterError::NoParticles);
+        }
         let uniform = 1.0 / n as f64;
-        Self {
+        Ok(Self {
             options,
+            on_one_thread: false,
             spare: states.clone(),
             states,
             weights: vec![uniform; n],
             log_weights: vec![uniform.ln(); n],
             log_likelihoods: vec![0.0; n],
             ancestors: Vec::with_capacity(n),
-        }
+        })
+    }
+
+    /// Weighs the particles on the calling thread, for likelihoods too cheap to share, or callers that use the threads
+    /// themselves. The results are the same bits.
+    pub fn on_one_thread(mut self) -> Self {
+        self.on_one_thread = true;
+        self
     }
 
     /// The particles.
@@ -128,9 +157,10 @@ impl<const N: usize> ParticleFilter<N> {
         let log_evidence = weights::normalise(&mut self.log_weights, &mut self.weights, self.options.epsilon);
         let effective_sample_size = weights::effective_sample_size(&self.weights);
         let before = self.mean_and_covariance();
-        let resampled = effective_sample_size < self.options.resampling_threshold * self.states.len() as f64;
-        if resampled {
-            self.resample(rng);
+        let due = effective_sample_size < self.options.resampling_threshold * self.states.len() as f64;
+        let resampled = due && self.resample(rng);
+        if resampled && let Some(kernel) = self.options.regularisation {
+            self.regularise(kernel, &before.1, rng);
         }
         let (mean, covariance) = if resampled && self.options.estimate_after_resampling {
             self.mean_and_covariance()
@@ -153,24 +183,39 @@ impl<const N: usize> ParticleFilter<N> {
 
     /// Step 2.
     fn weigh(&mut self, observation: &(impl Observation<N> + Sync)) {
-        self.states
-            .par_chunks(CHUNK)
-            .zip(self.log_likelihoods.par_chunks_mut(CHUNK))
-            .for_each(|(states, out)| observation.log_likelihoods(states, out));
+        if self.on_one_thread {
+            observation.log_likelihoods(&self.states, &mut self.log_likelihoods);
+        } else {
+            self.states
+                .par_chunks(CHUNK)
+                .zip(self.log_likelihoods.par_chunks_mut(CHUNK))
+                .for_each(|(states, out)| observation.log_likelihoods(states, out));
+        }
         for (log_weight, log_likelihood) in self.log_weights.iter_mut().zip(&self.log_likelihoods) {
             *log_weight += log_likelihood;
         }
     }
 
-    /// Step 5.
-    fn resample<R: Rng + ?Sized>(&mut self, rng: &mut R) {
-        self.options.resampling.draw(&self.weights, rng, &mut self.ancestors);
+    /// Step 5; whether there was anything to do.
+    fn resample<R: Rng + ?Sized>(&mut self, rng: &mut R) -> bool {
+        if !self.options.resampling.resample(&self.weights, rng, &mut self.ancestors) {
+            return false;
+        }
         self.spare.clear();
         self.spare.extend(self.ancestors.iter().map(|&i| self.states[i]));
         std::mem::swap(&mut self.states, &mut self.spare);
         let uniform = 1.0 / self.states.len() as f64;
         self.weights.fill(uniform);
         self.log_weights.fill(uniform.ln());
+        true
+    }
+
+    /// The end of step 5: particles that were copied are drawn apart.
+    fn regularise<R: Rng + ?Sized>(&mut self, kernel: Kernel, covariance: &Covariance<N>, rng: &mut R) {
+        let scale = semidefinite_factor(covariance) * kernel.bandwidth(N, self.states.len());
+        for state in &mut self.states {
+            *state += scale * kernel.sample(rng);
+        }
     }
 
     /// Step 6.

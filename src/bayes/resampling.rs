@@ -3,6 +3,30 @@
 use rand::{Rng, RngExt};
 use serde::{Deserialize, Serialize};
 
+/// A way to draw ancestors.
+pub trait Resample {
+    /// Draws as many ancestors as there are weights, in ascending order, into `ancestors`; `false` if the weights are to
+    /// be kept instead, with `ancestors` as it was. `weights` sum to 1.
+    fn resample<R: Rng + ?Sized>(&self, weights: &[f64], rng: &mut R, ancestors: &mut Vec<usize>) -> bool;
+}
+
+/// Sequential importance sampling: particles are never resampled, and their weights degenerate with time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct NoResampling;
+
+impl Resample for NoResampling {
+    fn resample<R: Rng + ?Sized>(&self, _: &[f64], _: &mut R, _: &mut Vec<usize>) -> bool {
+        false
+    }
+}
+
+impl Resample for Resampling {
+    fn resample<R: Rng + ?Sized>(&self, weights: &[f64], rng: &mut R, ancestors: &mut Vec<usize>) -> bool {
+        self.draw(weights, rng, ancestors);
+        true
+    }
+}
+
 /// How ancestors are drawn. Every scheme is unbiased: particle i is expected N * weight_i times.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]

@@ -7,6 +7,7 @@ use clap::{Parser, Subcommand};
 mod config;
 mod demo;
 mod demo_folder;
+mod estimate;
 mod first_box;
 mod outputs;
 mod parameters;
@@ -45,6 +46,9 @@ enum Command {
     /// Print every parameter with its default, meaning and unit, as a TOML that --config takes
     #[command(after_help = config::EXAMPLES)]
     Config(config::ConfigArgs),
+    /// Compare state estimators on a simulated oscillator; needs no data
+    #[command(after_help = estimate::EXAMPLES)]
+    Estimate(estimate::EstimateArgs),
 }
 
 /// Runs the program on its command line.
@@ -53,6 +57,7 @@ pub fn main() -> ExitCode {
         Command::Track(args) => track::track(&args),
         Command::Demo(args) => demo::demo(&args),
         Command::Config(args) => config::config(&args),
+        Command::Estimate(args) => estimate::estimate(&args),
     };
     infopart::program::report(outcome)
 }

@@ -49,6 +49,14 @@ pub fn parse_count(text: &str) -> Result<usize, String> {
     }
 }
 
+/// A finite number above 0.
+pub fn parse_positive(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(number) if number.is_finite() && number > 0.0 => Ok(number),
+        _ => Err("give a finite number above 0, such as 0.5 or 1e-3".to_owned()),
+    }
+}
+
 /// The formats of rows.
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub enum Format {

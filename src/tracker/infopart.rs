@@ -310,6 +310,7 @@ fn particle_set(parameters: &CheckedParameters, part: &Rect, set: usize) -> Part
         resampling_threshold: parameters.resampling_threshold,
         epsilon: parameters.epsilon,
         estimate_after_resampling: parameters.estimate_after_resampling,
+        regularisation: None,
     };
     ParticleFilter::new(states, options)
 }

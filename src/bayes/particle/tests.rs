@@ -5,7 +5,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
 
 use super::*;
-use crate::bayes::random_walk::RandomWalk;
+use crate::bayes::{random_walk::RandomWalk, resampling::NoResampling};
 
 /// y = x + N(0, sigma^2).
 struct Measured {
@@ -201,4 +201,72 @@ fn a_week_after_rain_it_is_clear_with_the_papers_probability() {
     let clear = filter.states().iter().filter(|s| s[0] == CLEAR).count() as f64 / n as f64;
     let standard_error = (exact[0] * (1.0 - exact[0]) / n as f64).sqrt();
     assert!((clear - exact[0]).abs() < 4.0 * standard_error, "{clear}");
+}
+
+#[test]
+fn without_resampling_it_still_meets_the_exact_answer_while_its_weights_degenerate() {
+    let (q, r) = (0.3f64, 0.2f64);
+    let transition = RandomWalk::<1>::new(State::<1>::new(q.sqrt()));
+    let mut rng = ChaCha8Rng::seed_from_u64(6);
+    let options = ParticleFilterOptions {
+        resampling: NoResampling,
+        resampling_threshold: 2.0,
+        epsilon: 0.0,
+        estimate_after_resampling: false,
+        regularisation: None,
+    };
+    let mut filter = ParticleFilter::new(normal_particles(100_000, &mut rng), options);
+    let mut sizes = Vec::new();
+    for (y, (mean, variance, _)) in YS.iter().zip(kalman(&YS, q, r)) {
+        let found = filter.step(&transition, &Measured { y: *y, sigma: r.sqrt() }, &mut rng);
+        assert!(!found.resampled);
+        assert!((found.mean[0] - mean).abs() < 0.05, "{} {mean}", found.mean[0]);
+        assert!((found.covariance[0] - variance).abs() < 0.03, "{} {variance}", found.covariance[0]);
+        sizes.push(found.effective_sample_size);
+    }
+    assert!(sizes.is_sorted_by(|a, b| a > b), "{sizes:?}");
+    assert!(sizes[5] < 0.1 * sizes[0], "{sizes:?}");
+}
+
+#[test]
+fn regularising_draws_copies_apart_and_widens_by_the_bandwidth() {
+    for (kernel, variance_of_kernel) in [(Kernel::Gaussian, 1.0), (Kernel::Epanechnikov, 0.2)] {
+        let mut rng = ChaCha8Rng::seed_from_u64(8);
+        let options = ParticleFilterOptions {
+            resampling_threshold: 2.0,
+            estimate_after_resampling: true,
+            regularisation: Some(kernel),
+            ..Default::default()
+        };
+        let n = 50_000;
+        let mut filter = ParticleFilter::new(normal_particles(n, &mut rng), options);
+        // N(0, 1) seen at 1 with variance 1: N(1/2, 1/2), widened by h^2 times the kernel's variance.
+        let found = filter.correct(&Measured { y: 1.0, sigma: 1.0 }, &mut rng);
+        let h = kernel.bandwidth(1, n);
+        assert!((found.mean[0] - 0.5).abs() < 0.02);
+        let expected = 0.5 * (1.0 + h * h * variance_of_kernel);
+        assert!((found.covariance[0] - expected).abs() < 0.01, "{} {expected}", found.covariance[0]);
+        let mut positions: Vec<u64> = filter.states().iter().map(|s| s[0].to_bits()).collect();
+        positions.sort_unstable();
+        positions.dedup();
+        assert!(positions.len() > n - 10, "copies stayed copies: {}", positions.len());
+    }
+}
+
+#[test]
+fn no_particles_are_a_typed_error() {
+    let none = ParticleFilter::<1>::try_new(Vec::new(), ParticleFilterOptions::default());
+    assert_eq!(none.unwrap_err(), FilterError::NoParticles);
+}
+
+#[test]
+fn one_thread_weighs_to_the_same_bits() {
+    let run = |alone: bool| {
+        let transition = RandomWalk::<1>::new(State::<1>::new(0.5));
+        let mut rng = ChaCha8Rng::seed_from_u64(5);
+        let filter = ParticleFilter::new(normal_particles(501, &mut rng), ParticleFilterOptions::default());
+        let mut filter = if alone { filter.on_one_thread() } else { filter };
+        YS.map(|y| filter.step(&transition, &Measured { y, sigma: 0.3 }, &mut rng).mean[0].to_bits())
+    };
+    assert_eq!(run(true), run(false));
 }
