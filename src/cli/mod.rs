@@ -4,6 +4,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
+mod background;
 mod config;
 mod demo;
 mod demo_folder;
@@ -43,6 +44,9 @@ enum Command {
     /// Track a target from its box in the first frame
     #[command(after_help = track::EXAMPLES)]
     Track(Box<track::TrackArgs>),
+    /// Learn a static camera's background and show what moves: masks, blobs, a picture
+    #[command(after_help = background::EXAMPLES)]
+    Background(background::BackgroundArgs),
     /// Print every parameter with its default, meaning and unit, as a TOML that --config takes
     #[command(after_help = config::EXAMPLES)]
     Config(config::ConfigArgs),
@@ -56,6 +60,7 @@ pub fn main() -> ExitCode {
     let outcome = match Cli::parse().command {
         Command::Track(args) => track::track(&args),
         Command::Demo(args) => demo::demo(&args),
+        Command::Background(args) => background::background(&args),
         Command::Config(args) => config::config(&args),
         Command::Estimate(args) => estimate::estimate(&args),
     };
