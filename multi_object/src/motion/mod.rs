@@ -184,7 +184,7 @@ impl<D: MotionModel<N, M>, const N: usize, const M: usize> StateFilter<D, N, M> 
     /// S is singular or a number is not finite.
     pub fn assignment_cost(&self, measured: &State<M>) -> f64 {
         let belief = self.belief();
-        let jacobian = self.model.jacobian(&belief.mean);
+        let jacobian = Sensor::jacobian(&self.model, &belief.mean);
         let covariance = jacobian * belief.covariance * jacobian.transpose()
             + self.model.measurement_noise().covariance();
         let residual = measured - self.model.measure(&belief.mean);
