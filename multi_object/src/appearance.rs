@@ -46,9 +46,11 @@ impl Appearance {
 
 fn bin(frame: &FrameView<'_>, row: &[u8], x: usize) -> usize {
     let pixel = &row[x * frame.format().bytes_per_pixel()..];
-    frame.format().rgb_offsets().iter().fold(0, |bin, &channel| {
-        bin * LEVELS + usize::from(pixel[channel]) * LEVELS / 256
-    })
+    frame
+        .format()
+        .rgb_offsets()
+        .iter()
+        .fold(0, |bin, &channel| bin * LEVELS + usize::from(pixel[channel]) * LEVELS / 256)
 }
 
 /// Bhattacharyya's coefficient, in [0, 1]: 1 for the same colours, 0 for none in common.

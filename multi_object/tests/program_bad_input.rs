@@ -69,7 +69,10 @@ fn an_empty_result_is_scored_as_nothing_found_with_a_warning() {
     let result = file(folder.path(), "result.txt", "");
     let (code, table, complaints) = common::mot(&["score", &truth, &result]);
     assert_eq!(code, 0);
-    assert!(complaints.contains("warning") && complaints.contains("result.txt: no row in it"), "{complaints}");
+    assert!(
+        complaints.contains("warning") && complaints.contains("result.txt: no row in it"),
+        "{complaints}"
+    );
     assert!(table.contains(" 0.0%"), "{table}");
 }
 
@@ -92,10 +95,14 @@ fn folders_of_sequences_are_scored_by_name_and_a_missing_result_is_told() {
     fs::create_dir(folder.path().join("results")).unwrap();
     file(folder.path(), "results/A.txt", "1,1,10,10,5,9,1\n");
     let path = |name: &str| folder.path().join(name).display().to_string();
-    assert_refused(&["score", &path("train"), &path("results")], &["no B.txt", "give a result for each sequence"]);
+    assert_refused(
+        &["score", &path("train"), &path("results")],
+        &["no B.txt", "give a result for each sequence"],
+    );
     file(folder.path(), "results/B.txt", "1,1,90,90,5,9,1\n");
     let json = path("scores.json");
-    let (code, table, complaints) = common::mot(&["score", &path("train"), &path("results"), "--json", &json]);
+    let (code, table, complaints) =
+        common::mot(&["score", &path("train"), &path("results"), "--json", &json]);
     assert_eq!(code, 0, "{complaints}");
     let names: Vec<&str> = table.lines().skip(1).filter_map(|line| line.split_whitespace().next()).collect();
     assert_eq!(names, ["A", "B", "OVERALL"]);

@@ -112,8 +112,16 @@ fn sort_gives_the_tracks_and_scores_of_the_reference() {
             };
             let same: Vec<_> = theirs_by_frame[&row.frame].iter().filter(near).collect();
             assert_eq!(same.len(), 1, "{name}: {row:?}");
-            assert_eq!(*name_of.entry(row.identity).or_insert(same[0].identity), same[0].identity, "{name}: {row:?}");
-            assert_eq!(*ours_of.entry(same[0].identity).or_insert(row.identity), row.identity, "{name}: {row:?}");
+            assert_eq!(
+                *name_of.entry(row.identity).or_insert(same[0].identity),
+                same[0].identity,
+                "{name}: {row:?}"
+            );
+            assert_eq!(
+                *ours_of.entry(same[0].identity).or_insert(row.identity),
+                row.identity,
+                "{name}: {row:?}"
+            );
         }
     }
     let expected = cells(&fs::read_to_string(mot.join("expected_sort_scores.txt")).unwrap(), 19);

@@ -9,16 +9,17 @@ use infopart::{
     output::{Summary, tracker_title},
     program::{self, BadInput},
     run::{RunReport, run},
-    sequence::{self, OpenOptions},
+    sequence::{self, OpenOptions, Sequence},
     tracker::{CheckedParameters, InfoPart, Tracker},
 };
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use super::{
+    auto_init,
     first_box::FirstBox,
     outputs::Outputs,
     parameters::ParameterArgs,
-    values::{Format, parse_box, parse_count, parse_origin},
+    values::{Format, Init, parse_count, parse_init, parse_origin},
 };
 
 pub const EXAMPLES: &str = "\
@@ -26,6 +27,7 @@ Examples:
   infopart track Crossing --out boxes.txt        first box from the ground truth
   infopart track Jogging --target 2              one of its several targets
   infopart track video.mp4 --init 120,80,40,110  a video, the first box given
+  infopart track video.mp4 --init auto --target 2  a static camera: the second object that moves
   infopart track 'shots/*.png' --init 5,9,32,80 --out a.csv --annotate seen.mp4
   infopart track Crossing --region whole --json --quiet > /dev/null
 
@@ -52,10 +54,11 @@ pub struct TrackArgs {
     /// An OTB folder (img/ and groundtruth_rect.txt), a folder or a quoted glob of images (jpg, png, bmp),
     /// or a video (needs ffmpeg)
     input: String,
-    /// The target's box in the first frame: left, top, width, height in pixels [default: the ground truth's]
-    #[arg(long, value_name = "X,Y,W,H", value_parser = parse_box, allow_hyphen_values = true)]
-    init: Option<Rect>,
-    /// Which target of an OTB folder that has several: the K of groundtruth_rect.K.txt
+    /// The target's box in the first frame: left, top, width, height in pixels; or auto, before a static camera: the
+    /// first object that moves for 15 frames, from then on [default: the ground truth's]
+    #[arg(long, value_name = "X,Y,W,H|auto", value_parser = parse_init, allow_hyphen_values = true)]
+    init: Option<Init>,
+    /// Which target of an OTB folder that has several: the K of groundtruth_rect.K.txt; with --init auto the K-th object
     #[arg(long, value_name = "K", value_parser = parse_count)]
     target: Option<usize>,
     /// The number of the first pixel, in --init, the ground truth and the rows [default: 1 for OTB folders, else 0]
@@ -96,8 +99,8 @@ pub struct TrackArgs {
 pub fn track(args: &TrackArgs) -> Result<()> {
     let parameters = args.parameters.resolve()?;
     let pool = args.threads.map(thread_pool).transpose()?;
-    let mut sequence = sequence::open(&args.input, &args.open_options())?;
-    let first = FirstBox::find(args.init, &args.input, &sequence)?;
+    let (mut sequence, init) = args.open()?;
+    let first = FirstBox::find(init, &args.input, &sequence)?;
     let mut outputs = Outputs::open(args, sequence.origin, first.as_given, sequence.source.remaining())?;
     let interrupted = program::watch().context("Ctrl-C cannot be watched for")?;
     let threads = pool.as_ref().map_or_else(rayon::current_num_threads, |pool| pool.current_num_threads());
@@ -118,6 +121,32 @@ pub fn track(args: &TrackArgs) -> Result<()> {
 }
 
 impl TrackArgs {
+    /// The frames from the first to track on, and the first box if it is not the ground truth's, as the input counts.
+    fn open(&self) -> Result<(Sequence, Option<Rect>)> {
+        match self.init {
+            None => Ok((sequence::open(&self.input, &self.open_options())?, None)),
+            Some(Init::Box(given)) => Ok((sequence::open(&self.input, &self.open_options())?, Some(given))),
+            Some(Init::Auto) => self.open_auto(),
+        }
+    }
+
+    fn open_auto(&self) -> Result<(Sequence, Option<Rect>)> {
+        let options = OpenOptions { target: None, ..self.open_options() };
+        let number = self.target.unwrap_or(1);
+        let found = auto_init::find(&self.input, &options, number)?;
+        let options = OpenOptions { start: Some(found.frame), ..options };
+        let sequence = sequence::open(&self.input, &options)?;
+        let as_given = sequence.origin.from_frame(found.box_in_frame);
+        if !self.quiet {
+            let Rect { x, y, w, h } = as_given;
+            let (first_seen, frame) = (found.first_seen, found.frame);
+            eprintln!(
+                "object {number}, seen from frame {first_seen} on, is the target from frame {frame} on: {x},{y},{w},{h}"
+            );
+        }
+        Ok((sequence, Some(as_given)))
+    }
+
     fn open_options(&self) -> OpenOptions {
         OpenOptions { target: self.target, start: self.start, end: self.end, origin: self.origin }
     }

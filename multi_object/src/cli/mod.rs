@@ -10,6 +10,7 @@ use infopart::{
 };
 use multi_object::motchallenge::MotError;
 
+mod compare;
 mod filter;
 mod score;
 mod sort;
@@ -37,6 +38,9 @@ struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    /// Compare how well the filters predict, beside the paper's table
+    #[command(after_help = compare::EXAMPLES)]
+    Compare(compare::CompareArgs),
     /// Score tracks against the ground truth: CLEAR-MOT, identity scores, HOTA
     #[command(after_help = score::EXAMPLES)]
     Score(score::ScoreArgs),
@@ -53,6 +57,7 @@ pub fn main() -> ExitCode {
     let outcome = match Cli::parse().command {
         Command::Score(args) => score::score(&args),
         Command::Track(args) => track::track(&args),
+        Command::Compare(args) => compare::compare(&args),
         Command::Sort(args) => sort::sort(&args),
     };
     program::report_with(outcome, code_of)

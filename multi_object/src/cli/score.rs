@@ -65,7 +65,10 @@ pub fn score(args: &ScoreArgs) -> Result<()> {
         let truth = read_ground_truth(&pair.truth)?;
         let result = read_tracks(&pair.result)?;
         if result.is_empty() {
-            eprintln!("warning: {}: no row in it: scored as a tracker that found nothing", pair.result.display());
+            eprintln!(
+                "warning: {}: no row in it: scored as a tracker that found nothing",
+                pair.result.display()
+            );
         }
         counts.push((pair.name, Counts::of(&truth, &result, rules)));
     }
@@ -113,7 +116,8 @@ fn folders(truth: &Path, result: &Path) -> Result<Vec<Pair>> {
     let missing: Vec<String> =
         pairs.iter().filter(|pair| !pair.result.is_file()).map(|pair| format!("{}.txt", pair.name)).collect();
     if !missing.is_empty() {
-        let what = format!("no {}; give a result for each sequence, or GT RESULT by file", missing.join(", "));
+        let what =
+            format!("no {}; give a result for each sequence, or GT RESULT by file", missing.join(", "));
         return Err(MotError::Sequences { path: result.to_owned(), what }.into());
     }
     if pairs.is_empty() {
@@ -125,7 +129,9 @@ fn folders(truth: &Path, result: &Path) -> Result<Vec<Pair>> {
 
 fn json(rules: Rules, scores: &[(String, Scores)]) -> Result<String> {
     let sequences: Vec<serde_json::Value> = (scores.iter())
-        .map(|(name, scores)| Ok(serde_json::json!({ "sequence": name, "scores": serde_json::to_value(scores)? })))
+        .map(|(name, scores)| {
+            Ok(serde_json::json!({ "sequence": name, "scores": serde_json::to_value(scores)? }))
+        })
         .collect::<Result<_, serde_json::Error>>()?;
     let program = format!("mot {}", infopart::VERSION);
     Ok(serde_json::to_string_pretty(&serde_json::json!({
@@ -135,11 +141,12 @@ fn json(rules: Rules, scores: &[(String, Scores)]) -> Result<String> {
 
 fn table(scores: &[(String, Scores)]) -> String {
     let mut table = TextTable::new([
-        "", "IDF1", "IDP", "IDR", "Rcll", "Prcn", "GT", "MT", "PT", "ML", "FP", "FN", "IDs", "FM", "MOTA", "MOTP",
-        "IDt", "IDa", "IDm", "MOTPo", "FAR", "HOTA", "DetA", "AssA",
+        "", "IDF1", "IDP", "IDR", "Rcll", "Prcn", "GT", "MT", "PT", "ML", "FP", "FN", "IDs", "FM", "MOTA",
+        "MOTP", "IDt", "IDa", "IDm", "MOTPo", "FAR", "HOTA", "DetA", "AssA",
     ]);
     for (name, one) in scores {
-        let percent = |value: Option<f64>| value.map_or("-".to_owned(), |value| format!("{:.1}%", 100.0 * value));
+        let percent =
+            |value: Option<f64>| value.map_or("-".to_owned(), |value| format!("{:.1}%", 100.0 * value));
         let plain = |value: Option<f64>| value.map_or("-".to_owned(), |value| format!("{value:.3}"));
         let count = |value: Option<usize>| value.map_or("-".to_owned(), |value| value.to_string());
         let shares = [one.idf1, one.idp, one.idr, one.recall, one.precision].map(percent);

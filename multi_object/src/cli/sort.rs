@@ -61,7 +61,11 @@ impl SortArgs {
             return Err(BadInput(format!("--iou {}: give a number from 0 to 1", self.iou)).into());
         }
         if !(0.0..1.0).contains(&self.appearance) {
-            return Err(BadInput(format!("--appearance {}: give a number from 0 to below 1", self.appearance)).into());
+            return Err(BadInput(format!(
+                "--appearance {}: give a number from 0 to below 1",
+                self.appearance
+            ))
+            .into());
         }
         Ok(SortParameters {
             max_age: self.max_age,
@@ -125,8 +129,10 @@ impl Colours {
     fn of(&mut self, frame: u32, boxes: &[Rect]) -> Result<Vec<Appearance>> {
         let next = self.source.next_frame()?;
         let Some(picture) = next else {
-            let message =
-                format!("--frames {}: it ends before frame {frame}, which has detections after it; give all frames", self.input);
+            let message = format!(
+                "--frames {}: it ends before frame {frame}, which has detections after it; give all frames",
+                self.input
+            );
             return Err(BadInput(message).into());
         };
         let in_frame = boxes.iter().map(|seen| Origin::One.to_frame(*seen));

@@ -11,7 +11,10 @@ use clap::{Args, ValueEnum};
 use image::RgbImage;
 use infopart::{
     geometry::Origin,
-    output::{Destination, Observer, OutputError, PartialFile, PictureFolder, StandardOutput, VIDEO_EXTENSIONS, VideoWriter},
+    output::{
+        Destination, Observer, OutputError, PartialFile, PictureFolder, StandardOutput, VIDEO_EXTENSIONS,
+        VideoWriter,
+    },
     program::{self, BadInput},
     sequence::{FrameSource, OpenOptions, SourceFrame, open},
 };
@@ -116,7 +119,8 @@ fn next_frame(source: &mut dyn FrameSource) -> Result<Option<SourceFrame>> {
 fn tell(frames: u32, time: Duration, rows: &Rows, prediction: Option<Duration>) {
     let seconds = time.as_secs_f64();
     let speed = f64::from(frames) / seconds.max(f64::MIN_POSITIVE);
-    let prediction = prediction.map_or(String::new(), |time| format!("; {:.2} µs a prediction", time.as_secs_f64() * 1e6));
+    let prediction =
+        prediction.map_or(String::new(), |time| format!("; {:.2} µs a prediction", time.as_secs_f64() * 1e6));
     eprintln!(
         "{frames} frames in {seconds:.1} s ({speed:.1} frames/s, decoding included); {} boxes of {} objects{prediction}",
         rows.boxes,
@@ -167,7 +171,8 @@ enum Place {
 
 impl Pictures {
     fn create(path: &Path) -> Result<Self, OutputError> {
-        let extension = path.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase);
+        let extension =
+            path.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase);
         let is_video = extension.is_some_and(|extension| VIDEO_EXTENSIONS.contains(&extension.as_str()));
         let place = match is_video && !path.is_dir() {
             true => Place::Video(Box::new(VideoWriter::create(path)?)),

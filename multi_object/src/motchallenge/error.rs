@@ -71,13 +71,17 @@ pub enum RowProblem {
         text: String,
     },
     /// An identity that names nothing.
-    #[error("identity {text} is not a whole number from 0 on; a file of tracks needs one in every row (detections have -1)")]
+    #[error(
+        "identity {text} is not a whole number from 0 on; a file of tracks needs one in every row (detections have -1)"
+    )]
     Identity {
         /// What stands there.
         text: String,
     },
     /// A box without area.
-    #[error("a box of {width} x {height} has no area; width and height must be above 0 (is the row X1,Y1,X2,Y2?)")]
+    #[error(
+        "a box of {width} x {height} has no area; width and height must be above 0 (is the row X1,Y1,X2,Y2?)"
+    )]
     Size {
         /// Its width.
         width: f64,
@@ -85,7 +89,9 @@ pub enum RowProblem {
         height: f64,
     },
     /// An identity that is in two places at once.
-    #[error("identity {identity} is already in frame {frame}, at line {first_line}; remove one of the two rows")]
+    #[error(
+        "identity {identity} is already in frame {frame}, at line {first_line}; remove one of the two rows"
+    )]
     DuplicateIdentity {
         /// The identity.
         identity: u64,

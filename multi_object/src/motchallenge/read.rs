@@ -48,7 +48,8 @@ pub fn read_detections(path: &Path) -> Result<Vec<Detection>, MotError> {
     for (line, fields) in rows_of(&text) {
         let row = |problem| MotError::Row { path: path.to_owned(), line, problem };
         let frame = frame_of(&fields).map_err(row)?;
-        if let Some(previous) = detections.last().map(|last| last.frame).filter(|&previous| frame < previous) {
+        if let Some(previous) = detections.last().map(|last| last.frame).filter(|&previous| frame < previous)
+        {
             return Err(row(RowProblem::OutOfOrder { frame, previous }));
         }
         let box_in_file = box_of(&fields).map_err(row)?;

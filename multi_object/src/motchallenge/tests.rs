@@ -19,8 +19,14 @@ fn refused(text: &str) -> (usize, RowProblem) {
 
 #[test]
 fn rows_are_cut_at_commas_or_blanks_and_lines_count_blank_ones() {
-    let expected = TrackRow { frame: 2, identity: 7, box_in_file: Rect::new(1.5, -2.0, 3.0, 4.0), confidence: 1.0 };
-    for text in ["2,7,1.5,-2,3,4", "\n2, 7, 1.5, -2, 3, 4, 1, -1, -1, -1\r\n", "2 7 1.5 -2 3 4\n", "2.0,7.0,1.5,-2,3,4,1,"] {
+    let expected =
+        TrackRow { frame: 2, identity: 7, box_in_file: Rect::new(1.5, -2.0, 3.0, 4.0), confidence: 1.0 };
+    for text in [
+        "2,7,1.5,-2,3,4",
+        "\n2, 7, 1.5, -2, 3, 4, 1, -1, -1, -1\r\n",
+        "2 7 1.5 -2 3 4\n",
+        "2.0,7.0,1.5,-2,3,4,1,",
+    ] {
         assert_eq!(result(text).unwrap(), [expected], "{text:?}");
     }
     assert_eq!(refused("\n\n2,7,1,2,3"), (3, RowProblem::TooFewFields { found: 5, needed: 6 }));
@@ -58,8 +64,12 @@ fn rows_by_frame_or_by_identity_are_in_order_and_others_are_not() {
 
 #[test]
 fn a_row_is_written_as_others_read_it() {
-    let row = TrackRow { frame: 3, identity: 12, box_in_file: Rect::new(1.0, 2.345, 30.0, 4.0), confidence: 1.0 };
-    assert_eq!(row_text(&row), "3,12,1.00,2.35,30.00,4.00,1,-1,-1,-1\n".replace("2.35", &format!("{:.2}", 2.345)));
+    let row =
+        TrackRow { frame: 3, identity: 12, box_in_file: Rect::new(1.0, 2.345, 30.0, 4.0), confidence: 1.0 };
+    assert_eq!(
+        row_text(&row),
+        "3,12,1.00,2.35,30.00,4.00,1,-1,-1,-1\n".replace("2.35", &format!("{:.2}", 2.345))
+    );
     assert_eq!(result(&row_text(&row)).unwrap()[0].identity, 12);
 }
 

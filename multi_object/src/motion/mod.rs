@@ -17,7 +17,7 @@ mod models;
 #[cfg(test)]
 mod tests;
 
-pub use models::{ConstantTurn, ConstantVelocity, CentreModel};
+pub use models::{CentreModel, ConstantTurn, ConstantVelocity};
 
 /// How objects move and what is measured of them, with `N` components of state and `M` of measurement.
 pub trait MotionModel<const N: usize, const M: usize>: Dynamics<N> + Sensor<N, M> + Copy + Sync {
@@ -113,9 +113,16 @@ impl<D: MotionModel<N, M>, const N: usize, const M: usize> StateFilter<D, N, M> 
     ///
     /// # Errors
     /// [`FilterError`] if the filter cannot run on the model.
-    pub fn new(kind: FilterKind, model: D, belief: Gaussian<N>, options: FilterOptions) -> Result<Self, FilterError> {
+    pub fn new(
+        kind: FilterKind,
+        model: D,
+        belief: Gaussian<N>,
+        options: FilterOptions,
+    ) -> Result<Self, FilterError> {
         let engine = match (kind, model.linear()) {
-            (FilterKind::Kalman, Some(linear)) => Engine::Kalman(Box::new(KalmanFilter::new(*linear, belief)?)),
+            (FilterKind::Kalman, Some(linear)) => {
+                Engine::Kalman(Box::new(KalmanFilter::new(*linear, belief)?))
+            }
             (FilterKind::Kalman | FilterKind::Ekf, _) => Engine::Extended(ExtendedKalmanFilter::new(belief)),
             (FilterKind::Ukf, _) => {
                 let (points, measured) = (SigmaPoints::default(), MeasuredPoints::default());
@@ -185,8 +192,8 @@ impl<D: MotionModel<N, M>, const N: usize, const M: usize> StateFilter<D, N, M> 
     pub fn assignment_cost(&self, measured: &State<M>) -> f64 {
         let belief = self.belief();
         let jacobian = Sensor::jacobian(&self.model, &belief.mean);
-        let covariance = jacobian * belief.covariance * jacobian.transpose()
-            + self.model.measurement_noise().covariance();
+        let covariance =
+            jacobian * belief.covariance * jacobian.transpose() + self.model.measurement_noise().covariance();
         let residual = measured - self.model.measure(&belief.mean);
         let Some(factor) = Cholesky::new(covariance) else { return f64::INFINITY };
         let log_determinant: f64 = factor.l_dirty().diagonal().iter().map(|pivot| 2.0 * pivot.ln()).sum();
@@ -200,8 +207,10 @@ impl<const N: usize> Particles<N> {
         let mut rng = ChaCha8Rng::seed_from_u64(options.seed);
         let spread = GaussianNoise::new(belief.covariance)?;
         let states = (0..options.particles).map(|_| belief.mean + spread.sample(&mut rng)).collect();
-        let options =
-            ParticleFilterOptions { regularisation: Some(Kernel::Gaussian), ..ParticleFilterOptions::default() };
+        let options = ParticleFilterOptions {
+            regularisation: Some(Kernel::Gaussian),
+            ..ParticleFilterOptions::default()
+        };
         let filter = ParticleFilter::try_new(states, options)?.on_one_thread();
         Ok(Self { filter, rng, belief })
     }

@@ -2,7 +2,9 @@
 
 use infopart::bayes::{State, model::Dynamics};
 
-use super::{CentreModel, ConstantTurn, ConstantVelocity, FilterKind, FilterOptions, MotionModel, StateFilter};
+use super::{
+    CentreModel, ConstantTurn, ConstantVelocity, FilterKind, FilterOptions, MotionModel, StateFilter,
+};
 
 /// The centres of an object that walks, stops, turns and runs, with a gap.
 fn path() -> Vec<Option<State<2>>> {

@@ -76,7 +76,8 @@ fn at_threshold(threshold: f64, timeline: &Timeline, pairs: &[(usize, usize, f64
     let mut association_sum = 0.0;
     for (object, &frames_of_object) in objects.iter().enumerate() {
         for (&paired, &frames_of_track) in paired.row(object).iter().zip(tracks) {
-            association_sum += paired * paired / ((frames_of_object + frames_of_track) as f64 - paired).max(1.0);
+            association_sum +=
+                paired * paired / ((frames_of_object + frames_of_track) as f64 - paired).max(1.0);
         }
     }
     AtThreshold {

@@ -7,7 +7,8 @@ use crate::{assignment::Assigner, grid::Grid};
 /// Boxes that agree under the best one-to-one pairing of objects and tracks (IDTP).
 pub(super) fn true_positives(timeline: &Timeline) -> usize {
     let agreements = agreements(timeline);
-    let costs = Grid::from_fn(agreements.rows(), agreements.columns(), |row, column| -agreements.at(row, column));
+    let costs =
+        Grid::from_fn(agreements.rows(), agreements.columns(), |row, column| -agreements.at(row, column));
     let pairs = Assigner::default().solve(&costs).to_vec();
     pairs.iter().map(|&(row, column)| agreements.at(row, column) as usize).sum()
 }

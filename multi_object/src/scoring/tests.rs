@@ -13,7 +13,12 @@ fn at(frame: u32, identity: u64, place: u32) -> TrackRow {
 }
 
 fn shifted(frame: u32, identity: u64, place: u32, by: f64) -> TrackRow {
-    TrackRow { frame, identity, box_in_file: Rect::new(f64::from(place) * 100.0 + by, 1.0, 10.0, 20.0), confidence: 1.0 }
+    TrackRow {
+        frame,
+        identity,
+        box_in_file: Rect::new(f64::from(place) * 100.0 + by, 1.0, 10.0, 20.0),
+        confidence: 1.0,
+    }
 }
 
 fn scores(truth: &[TrackRow], result: &[TrackRow], rules: Rules) -> Scores {
@@ -29,7 +34,9 @@ fn two_objects() -> Vec<TrackRow> {
 fn an_identity_swap_is_two_switches_and_half_of_the_identities() {
     // Tracks 7 and 8 change places after the second frame.
     let result: Vec<TrackRow> = (1..=4)
-        .flat_map(|frame| if frame <= 2 { [at(frame, 7, 1), at(frame, 8, 2)] } else { [at(frame, 8, 1), at(frame, 7, 2)] })
+        .flat_map(|frame| {
+            if frame <= 2 { [at(frame, 7, 1), at(frame, 8, 2)] } else { [at(frame, 8, 1), at(frame, 7, 2)] }
+        })
         .collect();
     for rules in BOTH {
         let scores = scores(&two_objects(), &result, rules);
@@ -51,7 +58,10 @@ fn an_identity_swap_is_two_switches_and_half_of_the_identities() {
 fn a_gap_is_a_fragment_and_a_new_name_after_it_a_switch() {
     let truth: Vec<TrackRow> = (1..=10).map(|frame| at(frame, 1, 1)).collect();
     let with_gap = |name_after| -> Vec<TrackRow> {
-        (1..=10).filter(|frame| ![4, 5].contains(frame)).map(|f| at(f, if f > 5 { name_after } else { 3 }, 1)).collect()
+        (1..=10)
+            .filter(|frame| ![4, 5].contains(frame))
+            .map(|f| at(f, if f > 5 { name_after } else { 3 }, 1))
+            .collect()
     };
     let same = scores(&truth, &with_gap(3), Rules::Motmetrics);
     assert_eq!((same.fragments, same.switches, same.misses), (1, 0, 2));
@@ -60,7 +70,10 @@ fn a_gap_is_a_fragment_and_a_new_name_after_it_a_switch() {
     assert_eq!((new.fragments, new.switches, new.ascents, new.transfers), (1, 1, Some(1), Some(0)));
     // 80 % is not above 80 %, and a frame without any track ends no piece.
     let other = scores(&truth, &with_gap(4), Rules::Trackeval);
-    assert_eq!((other.mostly_tracked, other.partially_tracked, other.fragments, other.switches), (0, 1, 0, 1));
+    assert_eq!(
+        (other.mostly_tracked, other.partially_tracked, other.fragments, other.switches),
+        (0, 1, 0, 1)
+    );
     let watched: Vec<TrackRow> = [with_gap(4), vec![at(4, 9, 5), at(5, 9, 5)]].concat();
     assert_eq!(scores(&truth, &watched, Rules::Trackeval).fragments, 1);
 }
@@ -92,8 +105,10 @@ fn an_old_pairing_is_kept_by_one_toolkit_over_any_gap_and_by_the_other_only_from
 #[test]
 fn an_overlap_of_exactly_a_half_matches_and_less_does_not() {
     // A shift by a third of the width leaves 2/3 of it: an overlap of (2/3) / (4/3).
-    let truth = [TrackRow { frame: 1, identity: 1, box_in_file: Rect::new(0.0, 0.0, 3.0, 1.0), confidence: 1.0 }];
-    let moved = |x| [TrackRow { frame: 1, identity: 1, box_in_file: Rect::new(x, 0.0, 3.0, 1.0), confidence: 1.0 }];
+    let truth =
+        [TrackRow { frame: 1, identity: 1, box_in_file: Rect::new(0.0, 0.0, 3.0, 1.0), confidence: 1.0 }];
+    let moved =
+        |x| [TrackRow { frame: 1, identity: 1, box_in_file: Rect::new(x, 0.0, 3.0, 1.0), confidence: 1.0 }];
     for rules in BOTH {
         assert_eq!(scores(&truth, &moved(1.0), rules).misses, 0);
         assert_eq!(scores(&truth, &moved(1.01), rules).misses, 1);

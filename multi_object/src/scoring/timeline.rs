@@ -85,4 +85,3 @@ fn overlaps(frame: u32, boxes: &Boxes<'_>) -> FrameOverlaps {
     let indices = |boxes: &[(&TrackRow, usize)]| boxes.iter().map(|&(_, index)| index).collect();
     FrameOverlaps { frame, truth: indices(&boxes.truth), result: indices(&boxes.result), overlap }
 }
-

@@ -163,7 +163,9 @@ impl Sort {
     /// Step 2.
     fn pair(&mut self, detections: &[Rect], appearances: Option<&[Appearance]>) {
         let Self { overlap, predicted, score, tracks, .. } = self;
-        overlap.fill(detections.len(), predicted.len(), |row, column| detections[row].overlap(&predicted[column]));
+        overlap.fill(detections.len(), predicted.len(), |row, column| {
+            detections[row].overlap(&predicted[column])
+        });
         let min_overlap = self.parameters.min_overlap;
         let Some(appearances) = appearances else {
             self.association.by_overlap(overlap, min_overlap, &mut self.assigner);
@@ -179,7 +181,11 @@ impl Sort {
     }
 
     /// Step 3.
-    fn correct(&mut self, detections: &[Rect], appearances: Option<&[Appearance]>) -> Result<(), FilterError> {
+    fn correct(
+        &mut self,
+        detections: &[Rect],
+        appearances: Option<&[Appearance]>,
+    ) -> Result<(), FilterError> {
         for &(detection, track) in &self.association.pairs {
             let track = &mut self.tracks[track];
             track.unseen = 0;

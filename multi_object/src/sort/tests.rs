@@ -38,7 +38,8 @@ fn the_youngest_is_reported_first_and_a_shrinking_box_does_not_break_its_track()
     let far = HERE.translated(300.0, 0.0);
     assert_eq!(run(&[&[HERE, far]], SortParameters::default()), [vec![2, 1]]);
     // The area falls by more than what will be left of it.
-    let halves = [40.0, 20.0, 10.0, 5.0].map(|side| Rect::new(100.0 - side / 2.0, 100.0 - side / 2.0, side, side));
+    let halves =
+        [40.0, 20.0, 10.0, 5.0].map(|side| Rect::new(100.0 - side / 2.0, 100.0 - side / 2.0, side, side));
     let mut sort = Sort::new(SortParameters { min_overlap: 0.2, ..SortParameters::default() }).unwrap();
     for seen in halves {
         sort.update(&[seen], None).unwrap();

@@ -1,35 +1,37 @@
 //! From frames to detections, and a warning where the camera is not static.
 
-use std::fmt;
+use std::{collections::VecDeque, fmt};
 
 use infopart::{
-    background::{
-        BackgroundError, BackgroundModel, BackgroundParameters, CleanUp, FOREGROUND, MaskCleaner,
-    },
+    background::{BackgroundError, BackgroundModel, BackgroundParameters, CleanUp, FOREGROUND, MaskCleaner},
     frame::FrameView,
     geometry::Rect,
 };
 
-/// Share of foreground above which a frame is mostly foreground.
-const MOSTLY: f64 = 0.5;
-/// Frames in a row that are mostly foreground before it is said. A light that is switched is learnt in fewer.
-const PATIENCE: u32 = 10;
+/// Share of foreground, over the frames looked at, above which a camera seems to move. Before static cameras it stays
+/// within a few hundredths; a moving one shows more as soon as its picture has edges.
+const TOO_MUCH: f64 = 0.12;
+/// Frames that the share is the mean of.
+const FRAMES_LOOKED_AT: usize = 30;
 /// Frames that the model is left alone with before its masks are judged.
 const SETTLING: u64 = 10;
 
 /// The picture is not that of a static camera.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SceneWarning {
-    /// Frames, from the first on, of which the last ones were mostly foreground.
+    /// Frames seen so far.
     pub frames: u64,
+    /// The mean share of foreground over the last 30, in [0, 1].
+    pub foreground: f64,
 }
 
 impl fmt::Display for SceneWarning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "most of the picture is foreground in the {PATIENCE} frames up to frame {}: does the camera move, or did the \
-             light change? Objects are found only before a static camera",
+            "{:.0} % of the picture is foreground in the {FRAMES_LOOKED_AT} frames up to frame {}: does the camera move, or \
+             did the light change? Objects are found only before a static camera",
+            100.0 * self.foreground,
             self.frames
         )
     }
@@ -40,7 +42,8 @@ impl fmt::Display for SceneWarning {
 pub struct Detector {
     model: BackgroundModel,
     cleaner: MaskCleaner,
-    mostly_foreground: u32,
+    /// The share of foreground in each of the last frames.
+    shares: VecDeque<f64>,
     has_warned: bool,
 }
 
@@ -51,20 +54,24 @@ impl Detector {
     /// # Errors
     /// [`BackgroundError`] never, unless the constants are broken.
     pub fn new() -> Result<Self, BackgroundError> {
-        let background = BackgroundParameters { components: 3, training_frames: 40, ..BackgroundParameters::default() };
+        let background =
+            BackgroundParameters { components: 3, training_frames: 40, ..BackgroundParameters::default() };
         Ok(Self {
             model: BackgroundModel::new(background.check()?),
             cleaner: MaskCleaner::new(CleanUp::default().check()?),
-            mostly_foreground: 0,
+            shares: VecDeque::new(),
             has_warned: false,
         })
     }
 
-    /// The boxes of what moves in the next frame, and a warning, once, if that is most of the picture for long.
+    /// The boxes of what moves in the next frame, and a warning, once, if that is too much of the picture for long.
     ///
     /// # Errors
     /// [`BackgroundError`] if the frame has another size than the first, or is too large.
-    pub fn detect(&mut self, frame: FrameView<'_>) -> Result<(Vec<Rect>, Option<SceneWarning>), BackgroundError> {
+    pub fn detect(
+        &mut self,
+        frame: FrameView<'_>,
+    ) -> Result<(Vec<Rect>, Option<SceneWarning>), BackgroundError> {
         let raw = self.model.apply(frame)?;
         let foreground = raw.iter().filter(|&&value| value == FOREGROUND).count();
         let share = foreground as f64 / raw.len().max(1) as f64;
@@ -76,10 +83,15 @@ impl Detector {
 
     fn judge(&mut self, share: f64) -> Option<SceneWarning> {
         let frames = self.model.frames();
-        let is_mostly = frames > SETTLING && share > MOSTLY;
-        self.mostly_foreground = if is_mostly { self.mostly_foreground + 1 } else { 0 };
-        let is_due = self.mostly_foreground >= PATIENCE && !self.has_warned;
-        self.has_warned |= is_due;
-        is_due.then_some(SceneWarning { frames })
+        if frames <= SETTLING || self.has_warned {
+            return None;
+        }
+        self.shares.push_back(share);
+        if self.shares.len() > FRAMES_LOOKED_AT {
+            self.shares.pop_front();
+        }
+        let foreground = self.shares.iter().sum::<f64>() / FRAMES_LOOKED_AT as f64;
+        self.has_warned = self.shares.len() == FRAMES_LOOKED_AT && foreground > TOO_MUCH;
+        self.has_warned.then_some(SceneWarning { frames, foreground })
     }
 }

@@ -30,7 +30,7 @@ fn a_walker_keeps_its_identity_behind_a_tree_with_every_filter() {
             assert_eq!((identity, is_established, detected_in_frame.is_some()), (1, frame >= 7, !hidden));
             if frame > 20 {
                 let off = box_in_frame.centre_distance(&walker(frame));
-                assert!(off < if hidden { 15.0 } else { 6.0 }, "{filter:?}, frame {frame}: {off}");
+                assert!(off < if hidden { 15.0 } else { 10.0 }, "{filter:?}, frame {frame}: {off}");
             }
         }
     }
@@ -62,7 +62,7 @@ fn far_detections_start_tracks_and_predictions_have_the_size_of_the_detection_be
 
 #[test]
 fn a_moving_camera_is_told_once_and_a_static_one_never() {
-    let noise = |x: usize, y: usize| ((x * 7919 + y * 104_729) % 97 * 2) as u8;
+    let noise = |x: usize, y: usize| ((x * 7919 + y * 104_729) % 128 * 2) as u8;
     let warnings = |pixels_a_frame: usize| -> Vec<u64> {
         let mut detector = Detector::new().unwrap();
         let frames = (0..80).map(|frame| -> Vec<u8> {

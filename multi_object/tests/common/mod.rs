@@ -8,7 +8,8 @@ use std::path::{Path, PathBuf};
 pub fn data(folder: &str) -> Option<PathBuf> {
     let package = Path::new(env!("CARGO_MANIFEST_DIR"));
     let beside = || package.ancestors().map(|up| up.join("shared/data")).find(|data| data.is_dir());
-    let found = std::env::var_os("INFOPART_DATA").map(PathBuf::from).or_else(beside).map(|data| data.join(folder));
+    let found =
+        std::env::var_os("INFOPART_DATA").map(PathBuf::from).or_else(beside).map(|data| data.join(folder));
     match found {
         Some(found) if found.is_dir() => Some(found),
         _ => {
