@@ -7,14 +7,10 @@
 //! 4. holes, background that no path of background links to the border, are filled.
 
 use image::{GrayImage, Luma};
-use imageproc::{
-    distance_transform::Norm,
-    morphology::{close_mut, open_mut},
-    region_labelling::{Connectivity, connected_components},
-};
+use imageproc::region_labelling::{Connectivity, connected_components};
 use serde::{Deserialize, Serialize};
 
-use super::{BACKGROUND, BackgroundError, Blob, FOREGROUND, blobs, check_range};
+use super::{BACKGROUND, BackgroundError, Blob, FOREGROUND, blobs, check_range, morphology::spread};
 
 /// How a mask is cleaned. The defaults are those of the well-known MATLAB example of tracking in atrium.mp4.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -88,14 +84,12 @@ impl MaskCleaner {
         for value in mask.iter_mut() {
             *value = if *value == FOREGROUND { FOREGROUND } else { BACKGROUND };
         }
-        // The morphology is by the chessboard distance: a square of 2 k + 1 pixels is what is within k.
-        let reach = |side: usize| (side / 2) as u8;
-        if self.clean_up.opening > 1 {
-            open_mut(&mut mask, Norm::LInf, reach(self.clean_up.opening));
-        }
-        if self.clean_up.closing > 1 {
-            close_mut(&mut mask, Norm::LInf, reach(self.clean_up.closing));
-        }
+        // A square of 2 k + 1 pixels is what is within k.
+        let (opening, closing) = (self.clean_up.opening / 2, self.clean_up.closing / 2);
+        spread(&mut mask, BACKGROUND, opening);
+        spread(&mut mask, FOREGROUND, opening);
+        spread(&mut mask, FOREGROUND, closing);
+        spread(&mut mask, BACKGROUND, closing);
         if self.clean_up.fill_holes {
             fill_holes(&mut mask);
         }

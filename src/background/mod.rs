@@ -30,6 +30,7 @@
 mod blobs;
 mod clean_up;
 mod model;
+mod morphology;
 mod parameters;
 mod pixel;
 

@@ -3,6 +3,7 @@
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
+use infopart::program;
 
 mod auto_init;
 mod background;
@@ -13,6 +14,7 @@ mod estimate;
 mod first_box;
 mod outputs;
 mod parameters;
+mod several;
 mod track;
 mod values;
 
@@ -66,7 +68,7 @@ pub fn main() -> ExitCode {
         Command::Config(args) => config::config(&args),
         Command::Estimate(args) => estimate::estimate(&args),
     };
-    infopart::program::report(outcome)
+    program::report_with(outcome, |error| error.is::<several::Interrupted>().then_some(program::INTERRUPTED))
 }
 
 #[cfg(test)]

@@ -1,13 +1,19 @@
 //! The tracker's parameters: a preset, over it the keys of --config, over these the flags.
 
-use std::{fs, path::PathBuf};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
 
 use anyhow::{Context, Result};
 use clap::Args;
 use infopart::{
     geometry::Region,
     program::BadInput,
-    tracker::{CheckedParameters, Parameters},
+    tracker::{
+        CheckedParameters, Parameters,
+        colour::{CheckedColourParameters, ColourParameters},
+    },
 };
 
 use super::values::parse_count;
@@ -47,14 +53,35 @@ impl ParameterArgs {
         parameters.check().context(from)
     }
 
+    /// The colour tracker's: flags over the file over its defaults, checked.
+    pub fn resolve_colour(&self) -> Result<CheckedColourParameters> {
+        let foreign = [("--region", self.region.is_some()), ("--preset", self.preset != "default")];
+        if let Some((flag, _)) = foreign.iter().find(|(_, given)| *given) {
+            return Err(BadInput(format!("{flag} is InfoPart's; leave it out with --tracker colour")).into());
+        }
+        let mut parameters = match &self.config {
+            Some(path) => ColourParameters::from_toml(&read(path)?)
+                .with_context(|| format!("--config {} (for --tracker colour)", path.display()))?,
+            None => ColourParameters::default(),
+        };
+        parameters.particles = self.particles.unwrap_or(parameters.particles);
+        parameters.seed = self.seed.unwrap_or(parameters.seed);
+        parameters.check().context("parameters of the colour tracker")
+    }
+
     fn over_from_file(&self, base: Parameters) -> Result<Parameters> {
         let Some(path) = &self.config else { return Ok(base) };
-        let text = fs::read_to_string(path).map_err(|error| {
-            BadInput(format!(
-                "--config {}: {error}; give a TOML text file (`infopart config` prints one)",
-                path.display()
-            ))
-        })?;
+        let text = read(path)?;
         Parameters::from_toml(&text, base).with_context(|| format!("--config {}", path.display()))
     }
+}
+
+fn read(path: &Path) -> Result<String> {
+    let text = fs::read_to_string(path).map_err(|error| {
+        BadInput(format!(
+            "--config {}: {error}; give a TOML text file (`infopart config` prints one)",
+            path.display()
+        ))
+    })?;
+    Ok(text)
 }

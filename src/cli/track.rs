@@ -5,12 +5,15 @@ use std::{path::PathBuf, sync::Arc};
 use anyhow::{Context, Result};
 use clap::Args;
 use infopart::{
-    geometry::{Origin, Rect},
+    geometry::{Origin, Rect, Region},
     output::{Summary, tracker_title},
     program::{self, BadInput},
     run::{RunReport, run},
     sequence::{self, OpenOptions, Sequence},
-    tracker::{CheckedParameters, InfoPart, Tracker},
+    tracker::{
+        CheckedParameters, InfoPart, Tracker,
+        colour::{CheckedColourParameters, ColourTracker},
+    },
 };
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
@@ -19,7 +22,8 @@ use super::{
     first_box::FirstBox,
     outputs::Outputs,
     parameters::ParameterArgs,
-    values::{Format, Init, parse_count, parse_init, parse_origin},
+    several::{SeveralReport, track_several},
+    values::{Format, Init, TrackerName, parse_count, parse_init, parse_origin},
 };
 
 pub const EXAMPLES: &str = "\
@@ -30,6 +34,7 @@ Examples:
   infopart track video.mp4 --init auto --target 2  a static camera: the second object that moves
   infopart track 'shots/*.png' --init 5,9,32,80 --out a.csv --annotate seen.mp4
   infopart track Crossing --region whole --json --quiet > /dev/null
+  infopart track ships.avi --tracker colour --init 9,40,60,25 --init 200,52,48,20 --out ships.txt
 
 Rows: one a frame from the first tracked on, which holds the first box. A lost target has a row too: the best guess.
 
@@ -43,6 +48,10 @@ of each frame is in csv and jsonl rows.
 
 Parameters: --config over --preset, and --region, --particles and --seed over both.
 
+Trackers: infopart, or colour, a particle filter on colour histograms. colour takes --init several times: the targets \
+are followed together, each with the occlusions by the others in mind, and the rows of target K go to FILE.K.txt for \
+--out FILE.txt. Its parameters are those of `infopart config --tracker colour`.
+
 Exit codes:
   0    success
   1    internal failure
@@ -53,11 +62,15 @@ Exit codes:
 pub struct TrackArgs {
     /// An OTB folder (img/ and groundtruth_rect.txt), a folder or a quoted glob of images (jpg, png, bmp),
     /// or a video (needs ffmpeg)
-    input: String,
-    /// The target's box in the first frame: left, top, width, height in pixels; or auto, before a static camera: the
-    /// first object that moves for 15 frames, from then on [default: the ground truth's]
+    pub input: String,
+    /// What tracks
+    #[arg(long, value_name = "infopart|colour", default_value = "infopart")]
+    tracker: TrackerName,
+    /// The target's box in the first frame: left, top, width, height in pixels; with --tracker colour it may be
+    /// given several times, once a target; or auto, before a static camera: the first object that moves for 15 frames,
+    /// from then on [default: the ground truth's]
     #[arg(long, value_name = "X,Y,W,H|auto", value_parser = parse_init, allow_hyphen_values = true)]
-    init: Option<Init>,
+    init: Vec<Init>,
     /// Which target of an OTB folder that has several: the K of groundtruth_rect.K.txt; with --init auto the K-th object
     #[arg(long, value_name = "K", value_parser = parse_count)]
     target: Option<usize>,
@@ -96,19 +109,38 @@ pub struct TrackArgs {
     pub quiet: bool,
 }
 
+/// The tracker that the flags choose, with its parameters.
+enum Chosen {
+    InfoPart(CheckedParameters),
+    Colour(CheckedColourParameters),
+}
+
 pub fn track(args: &TrackArgs) -> Result<()> {
-    let parameters = args.parameters.resolve()?;
+    let chosen = args.chosen()?;
     let pool = args.threads.map(thread_pool).transpose()?;
-    let (mut sequence, init) = args.open()?;
+    let (mut sequence, boxes) = args.open()?;
+    let init = match (boxes.as_slice(), &chosen) {
+        ([_, _, ..], Chosen::Colour(parameters)) => {
+            let report = track_several(args, &boxes, sequence, parameters.clone(), pool)?;
+            tell_several(args, &report);
+            return Ok(());
+        }
+        ([_, _, ..], Chosen::InfoPart(_)) => {
+            let message =
+                "--init is given several times; InfoPart follows one target: give one, or --tracker colour";
+            return Err(BadInput(message.to_owned()).into());
+        }
+        (given, _) => given.first().copied(),
+    };
     let first = FirstBox::find(init, &args.input, &sequence)?;
     let mut outputs = Outputs::open(args, sequence.origin, first.as_given, sequence.source.remaining())?;
     let interrupted = program::watch().context("Ctrl-C cannot be watched for")?;
     let threads = pool.as_ref().map_or_else(rayon::current_num_threads, |pool| pool.current_num_threads());
-    let mut tracker = start_tracker(parameters.clone(), pool);
+    let mut tracker = chosen.start(pool);
     let report = run(
         sequence.source.as_mut(),
         &sequence.ground_truth,
-        &mut tracker,
+        tracker.as_mut(),
         first.in_frame,
         &mut outputs.observers(),
         interrupted,
@@ -117,20 +149,50 @@ pub fn track(args: &TrackArgs) -> Result<()> {
         Some(refusal) => refusal.into(),
         None => outputs.explain(error),
     })?;
-    tell_summary(args, summary(args, sequence.name, tracker.name(), &parameters, threads, report))
+    tell_summary(args, summary(args, sequence.name, &chosen, threads, report))
+}
+
+impl Chosen {
+    fn start(&self, pool: Option<Arc<ThreadPool>>) -> Box<dyn Tracker> {
+        match (self, pool) {
+            (Self::InfoPart(parameters), Some(pool)) => {
+                Box::new(InfoPart::with_pool(parameters.clone(), pool))
+            }
+            (Self::InfoPart(parameters), None) => Box::new(InfoPart::new(parameters.clone())),
+            (Self::Colour(parameters), Some(pool)) => {
+                Box::new(ColourTracker::with_pool(parameters.clone(), pool))
+            }
+            (Self::Colour(parameters), None) => Box::new(ColourTracker::new(parameters.clone())),
+        }
+    }
 }
 
 impl TrackArgs {
-    /// The frames from the first to track on, and the first box if it is not the ground truth's, as the input counts.
-    fn open(&self) -> Result<(Sequence, Option<Rect>)> {
-        match self.init {
-            None => Ok((sequence::open(&self.input, &self.open_options())?, None)),
-            Some(Init::Box(given)) => Ok((sequence::open(&self.input, &self.open_options())?, Some(given))),
-            Some(Init::Auto) => self.open_auto(),
+    fn chosen(&self) -> Result<Chosen> {
+        Ok(match self.tracker {
+            TrackerName::Infopart => Chosen::InfoPart(self.parameters.resolve()?),
+            TrackerName::Colour => Chosen::Colour(self.parameters.resolve_colour()?),
+        })
+    }
+
+    /// The frames from the first to track on, and the boxes of --init as the input counts.
+    fn open(&self) -> Result<(Sequence, Vec<Rect>)> {
+        match self.init.as_slice() {
+            [Init::Auto] => self.open_auto(),
+            given => {
+                let boxes = given.iter().map(|init| match init {
+                    Init::Box(given) => Ok(*given),
+                    Init::Auto => {
+                        Err(BadInput("--init auto: give it alone, without other --init".to_owned()))
+                    }
+                });
+                let boxes = boxes.collect::<Result<_, _>>()?;
+                Ok((sequence::open(&self.input, &self.open_options())?, boxes))
+            }
         }
     }
 
-    fn open_auto(&self) -> Result<(Sequence, Option<Rect>)> {
+    fn open_auto(&self) -> Result<(Sequence, Vec<Rect>)> {
         let options = OpenOptions { target: None, ..self.open_options() };
         let number = self.target.unwrap_or(1);
         let found = auto_init::find(&self.input, &options, number)?;
@@ -144,7 +206,7 @@ impl TrackArgs {
                 "object {number}, seen from frame {first_seen} on, is the target from frame {frame} on: {x},{y},{w},{h}"
             );
         }
-        Ok((sequence, Some(as_given)))
+        Ok((sequence, vec![as_given]))
     }
 
     fn open_options(&self) -> OpenOptions {
@@ -158,29 +220,26 @@ fn thread_pool(threads: usize) -> Result<Arc<ThreadPool>> {
     Ok(Arc::new(pool))
 }
 
-fn start_tracker(parameters: CheckedParameters, pool: Option<Arc<ThreadPool>>) -> InfoPart {
-    match pool {
-        Some(pool) => InfoPart::with_pool(parameters, pool),
-        None => InfoPart::new(parameters),
-    }
-}
-
 fn summary(
     args: &TrackArgs,
     sequence: String,
-    tracker: &str,
-    parameters: &CheckedParameters,
+    chosen: &Chosen,
     threads: usize,
     report: RunReport,
 ) -> Summary {
-    Summary {
-        sequence,
-        tracker: tracker_title(tracker, parameters.region),
-        region: parameters.region,
-        preset: args.parameters.preset.clone(),
-        seed: parameters.seed,
-        threads,
-        report,
+    let (tracker, region, seed) = match chosen {
+        Chosen::InfoPart(parameters) => {
+            (tracker_title("infopart", parameters.region), parameters.region, parameters.seed)
+        }
+        Chosen::Colour(parameters) => ("colour".to_owned(), Region::Whole, parameters.seed),
+    };
+    Summary { sequence, tracker, region, preset: args.parameters.preset.clone(), seed, threads, report }
+}
+
+fn tell_several(args: &TrackArgs, report: &SeveralReport) {
+    if !args.quiet && !args.json {
+        let files: Vec<_> = report.files.iter().map(|file| file.display().to_string()).collect();
+        eprintln!("{} frames, {} targets: {}", report.frames, files.len(), files.join(", "));
     }
 }
 

@@ -66,6 +66,15 @@ pub fn parse_count(text: &str) -> Result<usize, String> {
     }
 }
 
+/// The trackers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum TrackerName {
+    /// The part that changes least, by boosted Haar-like features and HOG
+    Infopart,
+    /// The colour-histogram particle filter
+    Colour,
+}
+
 /// A finite number above 0.
 pub fn parse_positive(text: &str) -> Result<f64, String> {
     match text.trim().parse::<f64>() {

@@ -1,6 +1,7 @@
-//! Trackers: the trait every one of them stands behind, and InfoPart.
+//! Trackers: the trait every one of them stands behind, InfoPart, and the colour-histogram particle filter.
 
 mod appearance;
+pub mod colour;
 mod confidence;
 mod estimate;
 mod first_box;
@@ -82,6 +83,14 @@ pub enum TrackError {
         width: usize,
         /// Height of the frame, pixels.
         height: usize,
+    },
+    /// No target, or more than a tracker of several can follow.
+    #[error("{given} targets; give from 1 to {most}")]
+    TargetCount {
+        /// Targets given.
+        given: usize,
+        /// Targets at most.
+        most: usize,
     },
     /// `update` was called before `init`.
     #[error("no target yet: call init with the first frame and the target's box")]

@@ -46,7 +46,8 @@ impl Limits {
         }
     }
 
-    fn confine(&self, state: PartState, aspect: f64) -> PartState {
+    /// The nearest state within the limits; `aspect` is h / w.
+    pub fn confine(&self, state: PartState, aspect: f64) -> PartState {
         let w = state[2].clamp(self.narrowest, self.widest);
         let (half_w, half_h) = (w / 2.0, aspect * w / 2.0);
         PartState::new(

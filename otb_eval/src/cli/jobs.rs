@@ -20,7 +20,8 @@ pub struct JobArgs {
     /// Where results are: OUT/PROTOCOL/TRACKER/seed_S/SEQ[_SEGMENT].txt
     #[arg(long, value_name = "RESULTS")]
     pub out: PathBuf,
-    /// Trackers by name: infopart, whole-body (the same on the whole box), paper (the method as printed)
+    /// Trackers by name: infopart, whole-body (the same on the whole box), paper (the method as printed),
+    /// colour (the colour-histogram particle filter)
     /// [default: infopart, unless there is a --config]
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     trackers: Option<Vec<String>>,
@@ -111,7 +112,7 @@ impl JobArgs {
         let mut factories: Vec<Box<dyn TrackerFactory>> = Vec::new();
         let unless_own = if self.config.is_empty() { vec!["infopart".to_owned()] } else { Vec::new() };
         for name in self.trackers.as_ref().unwrap_or(&unless_own) {
-            factories.push(Box::new(named_factory(name).context("--trackers")?));
+            factories.push(named_factory(name).context("--trackers")?);
         }
         for own in &self.config {
             factories.push(Box::new(own.factory()?));

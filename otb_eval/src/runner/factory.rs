@@ -3,10 +3,17 @@
 
 use infopart::{
     geometry::Region,
-    tracker::{CheckedParameters, InfoPart, ParameterError, Parameters, Tracker},
+    tracker::{
+        CheckedParameters, InfoPart, ParameterError, Parameters, Tracker,
+        colour::{CheckedColourParameters, ColourParameters, ColourTracker},
+    },
 };
 use serde_json::Value;
 use thiserror::Error;
+
+/// Names that [`named_factory`] knows: InfoPart's default, the same on the whole body, the method as printed, and the
+/// colour-histogram particle filter.
+pub const NAMES: [&str; 4] = ["infopart", "whole-body", "paper", "colour"];
 
 /// Makes trackers of one kind.
 pub trait TrackerFactory: Send + Sync {
@@ -31,7 +38,7 @@ pub trait TrackerFactory: Send + Sync {
 #[non_exhaustive]
 pub enum FactoryError {
     /// No tracker of that name.
-    #[error("there is no tracker `{name}`; choose from: {}; or give one of your own with --config {name}=FILE.toml", InfoPartFactory::NAMES.join(", "))]
+    #[error("there is no tracker `{name}`; choose from: {}; or give one of your own with --config {name}=FILE.toml", NAMES.join(", "))]
     Unknown {
         /// The name as given.
         name: String,
@@ -54,9 +61,6 @@ pub struct InfoPartFactory {
 }
 
 impl InfoPartFactory {
-    /// Names that [`named_factory`] knows: the default, the same on the whole body, the method as printed.
-    pub const NAMES: [&str; 3] = ["infopart", "whole-body", "paper"];
-
     /// InfoPart with these parameters, of which the seed does not matter.
     ///
     /// # Errors
@@ -75,7 +79,7 @@ impl InfoPartFactory {
 ///
 /// # Errors
 /// [`FactoryError::Unknown`].
-pub fn named_factory(name: &str) -> Result<InfoPartFactory, FactoryError> {
+pub fn named_factory(name: &str) -> Result<Box<dyn TrackerFactory>, FactoryError> {
     let preset = |preset| {
         Parameters::preset(preset)
             .map_err(|source| FactoryError::Parameters { name: name.to_owned(), source })
@@ -88,9 +92,62 @@ pub fn named_factory(name: &str) -> Result<InfoPartFactory, FactoryError> {
             parameters
         }
         "paper" => preset("paper")?,
+        "colour" => return Ok(Box::new(ColourFactory::new(name, ColourParameters::default())?)),
         _ => return Err(FactoryError::Unknown { name: name.to_owned() }),
     };
-    InfoPartFactory::new(name, parameters)
+    Ok(Box::new(InfoPartFactory::new(name, parameters)?))
+}
+
+/// The colour-histogram particle filter with some parameters, under a name.
+#[derive(Debug, Clone)]
+pub struct ColourFactory {
+    name: String,
+    parameters: CheckedColourParameters,
+}
+
+impl ColourFactory {
+    /// The colour tracker with these parameters, of which the seed does not matter.
+    ///
+    /// # Errors
+    /// [`FactoryError::Parameters`].
+    pub fn new(name: impl Into<String>, mut parameters: ColourParameters) -> Result<Self, FactoryError> {
+        let name = name.into();
+        parameters.seed = 1;
+        match parameters.check() {
+            Ok(parameters) => Ok(Self { name, parameters }),
+            Err(source) => Err(FactoryError::Parameters { name, source }),
+        }
+    }
+}
+
+impl TrackerFactory for ColourFactory {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn parameters(&self) -> Value {
+        without_seed(serde_json::to_value(&*self.parameters).unwrap_or_default())
+    }
+
+    fn program(&self) -> String {
+        format!("infopart {}", infopart::VERSION)
+    }
+
+    fn create(&self, seed: u64) -> Result<Box<dyn Tracker>, FactoryError> {
+        let mut parameters = (*self.parameters).clone();
+        parameters.seed = seed;
+        let parameters = parameters
+            .check()
+            .map_err(|source| FactoryError::Parameters { name: self.name.clone(), source })?;
+        Ok(Box::new(ColourTracker::new(parameters)))
+    }
+}
+
+fn without_seed(mut parameters: Value) -> Value {
+    if let Some(object) = parameters.as_object_mut() {
+        object.remove("seed");
+    }
+    parameters
 }
 
 impl TrackerFactory for InfoPartFactory {
@@ -99,11 +156,7 @@ impl TrackerFactory for InfoPartFactory {
     }
 
     fn parameters(&self) -> Value {
-        let mut parameters = serde_json::to_value(&*self.parameters).unwrap_or_default();
-        if let Some(object) = parameters.as_object_mut() {
-            object.remove("seed");
-        }
-        parameters
+        without_seed(serde_json::to_value(&*self.parameters).unwrap_or_default())
     }
 
     fn program(&self) -> String {
@@ -126,11 +179,14 @@ mod tests {
 
     #[test]
     fn every_name_is_known_and_others_are_refused_with_a_list() {
-        for name in InfoPartFactory::NAMES {
+        for name in NAMES {
             assert_eq!(named_factory(name).unwrap().name(), name);
         }
         let message = named_factory("kcf").map(|_| ()).unwrap_err().to_string();
-        assert!(message.contains("`kcf`") && message.contains("infopart, whole-body, paper"), "{message}");
+        assert!(
+            message.contains("`kcf`") && message.contains("infopart, whole-body, paper, colour"),
+            "{message}"
+        );
     }
 
     #[test]
@@ -141,5 +197,8 @@ mod tests {
         assert_eq!(seven, named_factory("infopart").unwrap().parameters());
         assert!(seven.get("seed").is_none() && seven["particles"].is_number());
         assert_ne!(seven, named_factory("whole-body").unwrap().parameters());
+        let colour = named_factory("colour").unwrap();
+        assert!(colour.parameters().get("seed").is_none());
+        assert_eq!(colour.create(3).unwrap().name(), "colour");
     }
 }

@@ -10,7 +10,7 @@ mod plan;
 mod pool;
 
 pub use execute::{Recording, execute};
-pub use factory::{FactoryError, InfoPartFactory, TrackerFactory, named_factory};
+pub use factory::{ColourFactory, FactoryError, InfoPartFactory, NAMES, TrackerFactory, named_factory};
 pub use job::{Job, stem};
 
 pub use plan::{PlanOptions, PlanProblem, Shard, plan};
