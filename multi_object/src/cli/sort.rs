@@ -6,7 +6,7 @@ use std::{
 };
 
 use anyhow::{Context, Result};
-use clap::Args;
+use clap::{Args, ValueEnum};
 use infopart::{
     geometry::{Origin, Rect},
     program::BadInput,
@@ -15,7 +15,7 @@ use infopart::{
 use multi_object::{
     appearance::Appearance,
     motchallenge::{Detection, TrackRow, read_detections, row_text},
-    sort::{Sort, SortParameters},
+    sort::{BoxNoise, Sort, SortParameters},
 };
 
 use super::{deliver, filter::FilterArgs};
@@ -27,6 +27,14 @@ Examples:
 
 A row of DET is FRAME,-1,X,Y,WIDTH,HEIGHT,CONFIDENCE; all rows are used, whatever their confidence. The result has a row \
 FRAME,ID,X,Y,WIDTH,HEIGHT,1,-1,-1,-1 for each track in each frame.";
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum NoiseArg {
+    /// The reference's, the same for every box
+    Reference,
+    /// In proportion to the first box of a track; the particle filter needs it
+    Proportional,
+}
 
 #[derive(Debug, Args)]
 pub struct SortArgs {
@@ -44,6 +52,9 @@ pub struct SortArgs {
     iou: f64,
     #[command(flatten)]
     filter: FilterArgs,
+    /// How uncertain boxes are: as the reference has it, or in proportion to the box
+    #[arg(long, value_enum, default_value = "reference")]
+    noise: NoiseArg,
     /// The frames (a folder of images or a video): colours of the boxes count in the association
     #[arg(long, value_name = "DIR")]
     frames: Option<String>,
@@ -73,13 +84,17 @@ impl SortArgs {
             min_overlap: self.iou,
             filter: self.filter.kind(),
             filter_options: self.filter.options()?,
+            noise: match self.noise {
+                NoiseArg::Reference => BoxNoise::Reference,
+                NoiseArg::Proportional => BoxNoise::Proportional,
+            },
             appearance_weight: self.appearance,
         })
     }
 }
 
 pub fn sort(args: &SortArgs) -> Result<()> {
-    let mut sort = Sort::new(args.parameters()?)?;
+    let mut sort = Sort::new(args.parameters()?);
     let detections = read_detections(&args.detections)?;
     let mut colours = args.frames.as_deref().map(Colours::open).transpose()?;
     let last = detections.last().map_or(0, |last| last.frame);

@@ -11,7 +11,7 @@
 //! use infopart::geometry::Rect;
 //! use multi_object::sort::{Sort, SortParameters};
 //!
-//! let mut sort = Sort::new(SortParameters::default())?;
+//! let mut sort = Sort::new(SortParameters::default());
 //! for frame in 0..5 {
 //!     let seen = [Rect::new(10.0 + 3.0 * f64::from(frame), 20.0, 30.0, 60.0)];
 //!     let reported = sort.update(&seen, None)?;
@@ -36,6 +36,7 @@ mod tests;
 
 use association::Association;
 use box_model::BoxModel;
+pub use box_model::BoxNoise;
 
 /// How SORT works; the defaults are those of the reference.
 #[derive(Debug, Clone, PartialEq)]
@@ -50,6 +51,8 @@ pub struct SortParameters {
     pub filter: FilterKind,
     /// How the filter runs.
     pub filter_options: FilterOptions,
+    /// How uncertain boxes are.
+    pub noise: BoxNoise,
     /// What likeness of colours counts in the pairing, against overlap, in [0, 1); only where appearances are given.
     pub appearance_weight: f64,
 }
@@ -62,6 +65,7 @@ impl Default for SortParameters {
             min_overlap: 0.3,
             filter: FilterKind::Kalman,
             filter_options: FilterOptions::default(),
+            noise: BoxNoise::Reference,
             appearance_weight: 0.5,
         }
     }
@@ -91,7 +95,6 @@ struct Track {
 #[derive(Debug)]
 pub struct Sort {
     parameters: SortParameters,
-    model: BoxModel,
     tracks: Vec<Track>,
     started: u64,
     frames: u32,
@@ -105,13 +108,9 @@ pub struct Sort {
 
 impl Sort {
     /// A tracker that has seen nothing.
-    ///
-    /// # Errors
-    /// [`FilterError`] never, unless the model's constants are broken.
-    pub fn new(parameters: SortParameters) -> Result<Self, FilterError> {
-        Ok(Self {
+    pub fn new(parameters: SortParameters) -> Self {
+        Self {
             parameters,
-            model: BoxModel::new()?,
             tracks: Vec::new(),
             started: 0,
             frames: 0,
@@ -121,7 +120,7 @@ impl Sort {
             assigner: Assigner::default(),
             association: Association::default(),
             reported: Vec::new(),
-        })
+        }
     }
 
     /// The next frame's detections, also if there are none; gives the tracks to report, the youngest first.
@@ -198,11 +197,11 @@ impl Sort {
         }
         for &detection in &self.association.detections_left {
             self.started += 1;
-            let belief = box_model::first_belief(&detections[detection])?;
+            let (model, belief) = BoxModel::starting(&detections[detection], self.parameters.noise)?;
             let options = self.parameters.filter_options.for_track(self.started);
             self.tracks.push(Track {
                 identity: self.started,
-                filter: StateFilter::new(self.parameters.filter, self.model, belief, options)?,
+                filter: StateFilter::new(self.parameters.filter, model, belief, options)?,
                 hit_streak: 0,
                 unseen: 0,
                 appearance: appearances.map(|seen| seen[detection].clone()),
