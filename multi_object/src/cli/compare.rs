@@ -21,7 +21,7 @@ use multi_object::{
     },
     line_plot::{Curve, LinePlot},
     motion::{ConstantTurn, ConstantVelocity, FilterKind, FilterOptions},
-    tracking::{Detector, TrackingParameters},
+    tracking::{Detector, TrackingParameters, USUAL_MIN_AREA},
 };
 
 use super::{deliver, text_table::TextTable};
@@ -52,6 +52,9 @@ pub struct CompareArgs {
     /// PF runs with seeds 1 to this, and its figures are means over them
     #[arg(long, default_value_t = 1, value_name = "COUNT", value_parser = clap::value_parser!(u64).range(1..=100))]
     seeds: u64,
+    /// Smallest object, pixels
+    #[arg(long, default_value_t = USUAL_MIN_AREA, value_name = "PIXELS")]
+    min_area: usize,
     /// A folder for per-frame CSV files and plots
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -90,7 +93,7 @@ pub fn compare(args: &CompareArgs) -> Result<()> {
         fs::create_dir_all(folder).map_err(|source| OutputError::Io { path: folder.clone(), source })?;
     }
     for video in &args.videos {
-        let (name, detections) = detect(video)?;
+        let (name, detections) = detect(video, args.min_area)?;
         for motion in [Motion::Cv, Motion::Ctrv] {
             let compared: Vec<Compared> = motion
                 .filters()
@@ -107,9 +110,9 @@ pub fn compare(args: &CompareArgs) -> Result<()> {
 }
 
 /// The name of the video, and what is detected in each frame.
-fn detect(video: &str) -> Result<(String, Vec<Vec<Rect>>)> {
+fn detect(video: &str, min_area: usize) -> Result<(String, Vec<Vec<Rect>>)> {
     let mut sequence = open(video, &OpenOptions::default())?;
-    let mut detector = Detector::new()?;
+    let mut detector = Detector::new(min_area)?;
     let mut detections = Vec::new();
     while let Some(frame) = sequence.source.next_frame()? {
         let detected = detector.detect(frame.frame.view());

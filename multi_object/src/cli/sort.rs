@@ -118,7 +118,7 @@ pub fn sort(args: &SortArgs) -> Result<()> {
     }
     deliver(args.out.as_deref(), &text)?;
     let speed = f64::from(last) / time.as_secs_f64().max(f64::MIN_POSITIVE);
-    eprintln!("{last} frames, {rows} boxes; {:.3} s in the tracker, {speed:.0} frames/s", time.as_secs_f64());
+    eprintln!("{last} frames, {rows} boxes; {:.6} s in the tracker, {speed:.0} frames/s", time.as_secs_f64());
     Ok(())
 }
 

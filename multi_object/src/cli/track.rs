@@ -22,7 +22,7 @@ use multi_object::{
     drawing::TrackPainter,
     motchallenge::{TrackRow, row_text},
     motion::{CentreModel, ConstantTurn, ConstantVelocity, FilterKind},
-    tracking::{BlobTracker, Detector, TrackState, TrackingParameters},
+    tracking::{BlobTracker, Detector, TrackState, TrackingParameters, USUAL_MIN_AREA},
 };
 
 use super::{Interrupted, filter::FilterArgs};
@@ -52,6 +52,9 @@ pub struct TrackArgs {
     /// How objects move
     #[arg(long, value_enum, default_value = "cv")]
     motion: MotionArg,
+    /// Smallest object, pixels
+    #[arg(long, default_value_t = USUAL_MIN_AREA, value_name = "PIXELS")]
+    min_area: usize,
     /// Write the tracks here instead of to standard output
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
@@ -79,7 +82,7 @@ pub fn track(args: &TrackArgs) -> Result<()> {
 fn run<D: CentreModel<N>, const N: usize>(args: &TrackArgs, parameters: TrackingParameters) -> Result<()> {
     let mut source = open(&args.video, &OpenOptions::default())?.source;
     let mut tracker = BlobTracker::<D, N>::new(parameters)?;
-    let mut detector = Detector::new()?;
+    let mut detector = Detector::new(args.min_area)?;
     let mut rows = Rows::create(args.out.as_deref())?;
     let mut pictures = args.annotate.as_deref().map(Pictures::create).transpose()?;
     let interrupted = program::watch().context("Ctrl-C cannot be watched for")?;

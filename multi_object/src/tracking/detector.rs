@@ -37,6 +37,9 @@ impl fmt::Display for SceneWarning {
     }
 }
 
+/// Smallest object, pixels, where nothing else is said.
+pub const USUAL_MIN_AREA: usize = 400;
+
 /// Finds what moves.
 #[derive(Debug)]
 pub struct Detector {
@@ -48,17 +51,17 @@ pub struct Detector {
 }
 
 impl Detector {
-    /// A detector that has learnt nothing: 3 Gaussians, 40 training frames, and else the background model's and the
-    /// clean-up's defaults.
+    /// A detector that has learnt nothing: 3 Gaussians, 40 training frames, blobs of at least `min_area` pixels, and else
+    /// the background model's and the clean-up's defaults.
     ///
     /// # Errors
     /// [`BackgroundError`] never, unless the constants are broken.
-    pub fn new() -> Result<Self, BackgroundError> {
+    pub fn new(min_area: usize) -> Result<Self, BackgroundError> {
         let background =
             BackgroundParameters { components: 3, training_frames: 40, ..BackgroundParameters::default() };
         Ok(Self {
             model: BackgroundModel::new(background.check()?),
-            cleaner: MaskCleaner::new(CleanUp::default().check()?),
+            cleaner: MaskCleaner::new(CleanUp { min_area, ..CleanUp::default() }.check()?),
             shares: VecDeque::new(),
             has_warned: false,
         })

@@ -29,7 +29,7 @@ mod detector;
 #[cfg(test)]
 mod tests;
 
-pub use detector::{Detector, SceneWarning};
+pub use detector::{Detector, SceneWarning, USUAL_MIN_AREA};
 
 /// How tracks live and die.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -5,7 +5,7 @@ use infopart::{
     geometry::Rect,
 };
 
-use super::{BlobTracker, Detector, TrackState, TrackingParameters};
+use super::{BlobTracker, Detector, TrackState, TrackingParameters, USUAL_MIN_AREA};
 use crate::motion::{ConstantTurn, ConstantVelocity, FilterKind};
 
 /// A walker of 20 x 40, 3 pixels a frame.
@@ -64,7 +64,7 @@ fn far_detections_start_tracks_and_predictions_have_the_size_of_the_detection_be
 fn a_moving_camera_is_told_once_and_a_static_one_never() {
     let noise = |x: usize, y: usize| ((x * 7919 + y * 104_729) % 128 * 2) as u8;
     let warnings = |pixels_a_frame: usize| -> Vec<u64> {
-        let mut detector = Detector::new().unwrap();
+        let mut detector = Detector::new(USUAL_MIN_AREA).unwrap();
         let frames = (0..80).map(|frame| -> Vec<u8> {
             (0..48 * 64).map(|i| noise(i % 64 + frame * pixels_a_frame, i / 64)).collect()
         });
