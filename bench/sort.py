@@ -71,6 +71,7 @@ def main():
     add("--data", type=Path, default=os.environ.get("INFOPART_DATA"), help="the folder that holds mot/ [default: INFOPART_DATA]")
     add("--runs", type=int, default=5, help="runs of either, of which the fastest counts [default: 5]")
     options = parser.parse_args()
+    options.mot = options.mot.resolve()
     if not os.access(options.mot, os.X_OK):
         fail(f"no program at {options.mot}: run `cargo build --release --workspace`, or give its path with --mot")
     files = sorted(Path(options.data or "").glob("mot/*/det/det.txt"))

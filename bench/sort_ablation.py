@@ -49,6 +49,7 @@ def main():
     folders = [path.parent.parent for path in sorted(Path(options.data or "").glob("mot/*/gt/gt.txt"))]
     if not folders:
         fail("no mot/SEQ/gt/gt.txt: give the folder that holds mot/ with --data")
+    options.mot = options.mot.resolve()
     if not os.access(options.mot, os.X_OK):
         fail(f"no program at {options.mot}: run `cargo build --release --workspace`, or give its path with --mot")
     print("sequence        noise         filter  max-age  colours   IDF1  IDSW    FM   MOTA   HOTA")

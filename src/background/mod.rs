@@ -33,6 +33,7 @@ mod model;
 mod morphology;
 mod parameters;
 mod pixel;
+mod regions;
 
 pub use blobs::Blob;
 pub use clean_up::{CheckedCleanUp, CleanUp, MaskCleaner};
