@@ -85,3 +85,76 @@ impl<const N: usize> ExtendedKalmanFilter<N> {
         Ok(innovation)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{Matrix1, Matrix2, Vector1, Vector2};
+
+    use super::*;
+
+    /// A push w that enters by half its square of time and by its time, and a drag that grows with speed.
+    struct Pushed;
+
+    impl NoisyDynamics<2, 1> for Pushed {
+        fn propagate(&self, state: &State<2>, noise: &State<1>) -> State<2> {
+            let speed = state[1];
+            Vector2::new(state[0] + speed + 0.5 * noise[0], speed - 0.1 * speed * speed + speed * noise[0])
+        }
+    }
+
+    /// The square of the first component.
+    struct Squared;
+
+    impl Sensor<2, 1> for Squared {
+        fn measure(&self, state: &State<2>) -> State<1> {
+            Vector1::new(state[0] * state[0])
+        }
+    }
+
+    fn start() -> ExtendedKalmanFilter<2> {
+        let covariance = Matrix2::new(0.5, 0.1, 0.1, 0.3);
+        ExtendedKalmanFilter::new(Gaussian::new(Vector2::new(3.0, 2.0), covariance).unwrap())
+    }
+
+    #[test]
+    fn noise_goes_through_its_own_jacobian() {
+        let mut filter = start();
+        let before = filter.belief().covariance;
+        let noise = GaussianNoise::new(Matrix1::new(0.2)).unwrap();
+        let moved = *filter.predict_general(&Pushed, &noise).unwrap();
+        // By hand at (3, 2), w = 0: F = [1 1; 0 1 - 0.2 * 2], W = [0.5; 2].
+        let (f, w) = (Matrix2::new(1.0, 1.0, 0.0, 0.6), Vector2::new(0.5, 2.0));
+        let expected = f * before * f.transpose() + w * w.transpose() * 0.2;
+        assert_eq!(moved.mean, Vector2::new(5.0, 1.6));
+        assert!((moved.covariance - expected).amax() < 1e-9, "{}", moved.covariance);
+    }
+
+    #[test]
+    fn a_sensor_is_linearised_at_the_prediction() {
+        let mut filter = start();
+        let noise = GaussianNoise::new(Matrix1::new(2.0)).unwrap();
+        let innovation = filter.update(&Squared, &noise, &Vector1::new(10.0)).unwrap();
+        // H = [6 0]: S = 36 * 0.5 + 2 = 20, K = [3; 0.6] / 20.
+        assert!((innovation.covariance[0] - 20.0).abs() < 1e-8);
+        assert!((filter.belief().mean - Vector2::new(3.15, 2.03)).amax() < 1e-9);
+        assert!((filter.belief().covariance - Matrix2::new(0.05, 0.01, 0.01, 0.282)).amax() < 1e-9);
+    }
+
+    #[test]
+    fn what_is_not_finite_is_refused_and_leaves_the_belief() {
+        struct Broken;
+        impl Dynamics<2> for Broken {
+            fn propagate(&self, state: &State<2>) -> State<2> {
+                state / 0.0
+            }
+        }
+        let mut filter = start();
+        let before = filter;
+        let noise = GaussianNoise::new(Matrix2::identity()).unwrap();
+        assert!(matches!(filter.predict(&Broken, &noise), Err(FilterError::NotFinite { .. })));
+        let noise = GaussianNoise::new(Matrix1::new(0.0)).unwrap();
+        let error = filter.update(&Squared, &noise, &Vector1::new(f64::NAN)).unwrap_err();
+        assert_eq!(error, FilterError::NotFinite { what: "the measurement" });
+        assert_eq!(filter, before);
+    }
+}

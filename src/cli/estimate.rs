@@ -279,7 +279,7 @@ fn table(comparison: &Comparison, calibrated: bool) -> String {
     }
     let _ = write!(
         text,
-        "\n{:<12}{:>19}{:>19}{:>9}{:>16}{:>11}{:>8}\n",
+        "\n{:<12}{:>19}{:>19}{:>9}{:>19}{:>11}{:>8}\n",
         "filter", "RMSE of x", "RMSE of x'", "bias", "NEES", "ms a run", "failed"
     );
     for score in &comparison.filters {
@@ -288,7 +288,7 @@ fn table(comparison: &Comparison, calibrated: bool) -> String {
         };
         let _ = writeln!(
             text,
-            "{:<12}{:>19}{:>19}{:>9.5}{:>16}{:>11.3}{:>8}",
+            "{:<12}{:>19}{:>19}{:>9.5}{:>19}{:>11.3}{:>8}",
             score.filter,
             plus_minus(score.rmse, 5),
             plus_minus(score.rmse_of_velocity, 4),
@@ -307,6 +307,7 @@ fn table(comparison: &Comparison, calibrated: bool) -> String {
             gap.first, gap.second, difference.mean, difference.half_width
         );
     }
+    let _ = writeln!(text, "all of this order in {:.1} % of the runs", 100.0 * comparison.share_in_order);
     let mut by_time: Vec<_> = comparison.filters.iter().collect();
     by_time.sort_by(|a, b| a.seconds.total_cmp(&b.seconds));
     let names: Vec<&str> = by_time.iter().map(|score| score.filter.as_str()).collect();

@@ -270,3 +270,15 @@ fn one_thread_weighs_to_the_same_bits() {
     };
     assert_eq!(run(true), run(false));
 }
+
+#[test]
+fn no_likelihood_underflows_however_far_the_observation() {
+    let states = [0.0, 1.0, 2.0].map(State::<1>::new).to_vec();
+    let mut filter = ParticleFilter::new(states, ParticleFilterOptions::default());
+    let mut rng = ChaCha8Rng::seed_from_u64(1);
+    // The likelihoods are about exp(-5e13), and those of neighbours differ by a factor of exp(1e7).
+    let found = filter.correct(&Measured { y: 1e5, sigma: 0.01 }, &mut rng);
+    assert_eq!(found.mean[0], 2.0);
+    assert!(found.log_evidence.is_finite() && found.log_evidence < -1e13);
+    assert!(found.resampled && filter.states().iter().all(|state| state[0] == 2.0));
+}

@@ -18,7 +18,7 @@ pub enum SigmaPoints {
     /// Points at sqrt(n + beta) standard deviations, weights beta / (n + beta) and 1 / (2 (n + beta)). With a negative
     /// beta a covariance can become indefinite.
     Symmetric {
-        /// beta > -n.
+        /// Above -n.
         beta: f64,
     },
     /// Points at alpha sqrt(n + kappa) standard deviations (Julier 2002), so that they need not spread with n.
@@ -27,7 +27,7 @@ pub enum SigmaPoints {
         alpha: f64,
         /// Knowledge of the fourth moment, added to the centre's covariance weight: 2 for a Gaussian.
         beta: f64,
-        /// > -n.
+        /// Above -n.
         kappa: f64,
     },
 }

@@ -160,3 +160,35 @@ proptest! {
         }
     }
 }
+
+/// Seven components that turn each other.
+struct Ring;
+
+impl Dynamics<7> for Ring {
+    fn propagate(&self, state: &State<7>) -> State<7> {
+        State::from_fn(|i, _| 2.0 * (state[i] + 3.0 * state[(i + 1) % 7]).sin())
+    }
+}
+
+impl Sensor<7, 1> for Ring {
+    fn measure(&self, state: &State<7>) -> State<1> {
+        Vector1::new(state[0] * state[3])
+    }
+}
+
+#[test]
+fn seven_components_keep_a_positive_covariance_however_bent_the_model() {
+    let belief = Gaussian::<7>::new(State::repeat(0.5), Covariance::identity() * 2.0).unwrap();
+    let tiny = GaussianNoise::new(Covariance::<7>::identity() * 1e-9).unwrap();
+    let run = |points| {
+        let mut filter = UnscentedKalmanFilter::new(belief, points, MeasuredPoints::Redrawn).unwrap();
+        (0..300).try_for_each(|k| {
+            filter.predict(&Ring, &tiny)?;
+            filter.update(&Ring, &noise(1e-3), &Vector1::new((f64::from(k)).sin())).map(|_| ())
+        })
+    };
+    assert_eq!(run(SigmaPoints::Auto), Ok(()));
+    // n + beta = 3 weighs the centre by -4/3 and breaks down, with a remedy.
+    let error = run(SigmaPoints::Symmetric { beta: -4.0 }).unwrap_err();
+    assert!(error.to_string().contains("scale the sigma points") || error == FilterError::SingularInnovation);
+}

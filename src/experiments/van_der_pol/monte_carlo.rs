@@ -19,6 +19,8 @@ pub struct Comparison {
     pub filters: Vec<FilterScore>,
     /// Each filter against the next.
     pub gaps: Vec<Gap>,
+    /// Share of the runs in which every filter errs more than the next: what a single run would have shown.
+    pub share_in_order: f64,
 }
 
 /// How a filter did. Means over runs with intervals of 95 % confidence.
@@ -85,9 +87,11 @@ pub fn compare(
         second: pair[1].to_string(),
         rmse_difference: Statistic::of(scores.iter().map(|run| run[index].rmse - run[index + 1].rmse)),
     };
+    let in_order = |run: &&Vec<RunScore>| run.is_sorted_by(|first, second| first.rmse > second.rmse);
+    let share_in_order = scores.iter().filter(in_order).count() as f64 / runs as f64;
     let gaps = filters.windows(2).enumerate().map(gap).collect();
     let filters = filters.iter().enumerate().map(score).collect();
-    Ok(Comparison { setup: *setup, runs, seed, filters, gaps })
+    Ok(Comparison { setup: *setup, runs, seed, filters, gaps, share_in_order })
 }
 
 /// How a filter did in one run.

@@ -201,7 +201,7 @@ fn the_plot_is_whole_and_finite() {
     let filters = [Filter::Extended, REDRAWN, Filter::Particle(100)];
     let svg = plot(&setup(NoiseShape::Gauss), &filters, 1).unwrap();
     assert!(svg.starts_with("<svg") && svg.ends_with("</svg>\n"));
-    assert_eq!(svg.matches("<polyline").count(), 2 * 4);
+    assert_eq!(svg.matches("<polyline").count(), 3 * 4);
     assert_eq!(svg.matches("<circle").count(), SAMPLES + 1);
     assert!(!svg.contains("NaN") && !svg.contains("inf") && svg.contains("PF-100"));
 }
