@@ -65,7 +65,7 @@ fn the_first_object_that_lasts_is_the_target_and_another_can_be_picked() {
 
 #[test]
 fn where_too_little_moves_that_is_told_with_what_to_do() {
-    let scene = scene(26);
+    let scene = scene(25);
     let frames = scene.path("frames").display().to_string();
     let done = scene.run(&["track", &frames, "--init", "auto", "--target", "3"]);
     assert_eq!((done.code, done.stdout.as_str()), (2, ""));
