@@ -8,7 +8,7 @@ mod program_scene;
 /// A textured room; from frame 6 on a bright block walks right, and from frame 12 on a larger one walks left below it.
 fn picture(number: u32) -> RgbImage {
     let first = number.checked_sub(6).map(|walked| 10 + 2 * walked);
-    let second = number.checked_sub(12).map(|walked| 130 - 2 * walked);
+    let second = number.checked_sub(12).map(|walked| 130 - 4 * walked);
     RgbImage::from_fn(160, 120, |x, y| {
         let texture = ((x * 7 + y * 13) % 40) as u8;
         let inside = |left: Option<u32>, top: u32, w: u32, h: u32| {
@@ -53,8 +53,11 @@ fn the_first_object_that_lasts_is_the_target_and_another_can_be_picked() {
         // Fifteen frames, and a few until the model tells the object from the noise.
         assert!((enters + 14..enters + 22).contains(&frame), "{}", done.stderr);
         let walked = 2.0 * (frame - enters) as f64;
-        let object =
-            if enters == 6 { [10.0 + walked, 10.0, 12.0, 30.0] } else { [130.0 - walked, 60.0, 24.0, 40.0] };
+        let object = if enters == 6 {
+            [10.0 + walked, 10.0, 12.0, 30.0]
+        } else {
+            [130.0 - 2.0 * walked, 60.0, 24.0, 40.0]
+        };
         let rows = rows(&done.stdout);
         assert_eq!(rows.len(), 40 - frame + 1);
         // Cleaning the mask moves an edge by a few pixels.
