@@ -1,10 +1,9 @@
 //! Connected regions of a mask.
 
-use image::{GrayImage, Luma};
-use imageproc::region_labelling::{Connectivity, connected_components};
+use image::GrayImage;
 use serde::{Deserialize, Serialize};
 
-use super::BACKGROUND;
+use super::{FOREGROUND, regions::runs};
 use crate::geometry::Rect;
 
 /// A connected region of foreground.
@@ -34,16 +33,16 @@ const NOTHING: Sums = Sums { left: u32::MAX, top: u32::MAX, right: 0, bottom: 0,
 
 /// The 8-connected regions of at least `min_area` pixels, in the order of their first pixels.
 pub(super) fn find(mask: &GrayImage, min_area: usize) -> Vec<Blob> {
-    let labels = connected_components(mask, Connectivity::Eight, Luma([BACKGROUND]));
-    let most = labels.iter().copied().max().unwrap_or(0) as usize;
-    let mut sums = vec![NOTHING; most + 1];
-    for (x, y, label) in labels.enumerate_pixels().filter(|(_, _, label)| label.0[0] > 0) {
-        let sum = &mut sums[label.0[0] as usize];
-        (sum.left, sum.right) = (sum.left.min(x), sum.right.max(x));
-        (sum.top, sum.bottom) = (sum.top.min(y), sum.bottom.max(y));
-        sum.x += u64::from(x);
-        sum.y += u64::from(y);
-        sum.area += 1;
+    let runs = runs(mask, FOREGROUND, true);
+    let mut sums = vec![NOTHING; runs.len()];
+    for run in &runs {
+        let sum = &mut sums[run.region];
+        let (start, end, length) = (u64::from(run.start), u64::from(run.end), run.end - run.start);
+        (sum.left, sum.right) = (sum.left.min(run.start), sum.right.max(run.end - 1));
+        (sum.top, sum.bottom) = (sum.top.min(run.row), sum.bottom.max(run.row));
+        sum.x += (start + end - 1) * (end - start) / 2;
+        sum.y += u64::from(run.row) * u64::from(length);
+        sum.area += length as usize;
     }
     let large = sums.into_iter().filter(|sum| sum.area >= min_area.max(1));
     large.map(Sums::into_blob).collect()
@@ -68,6 +67,8 @@ impl Sums {
 
 #[cfg(test)]
 mod tests {
+    use image::Luma;
+
     use super::*;
 
     #[test]

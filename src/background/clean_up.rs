@@ -6,15 +6,12 @@
 //! 3. closing by a larger square joins the parts of an object,
 //! 4. holes, background that no path of background links to the border, are filled.
 
-use image::{GrayImage, Luma};
-use imageproc::{
-    distance_transform::Norm,
-    morphology::{close_mut, open_mut},
-    region_labelling::{Connectivity, connected_components},
-};
+use image::GrayImage;
 use serde::{Deserialize, Serialize};
 
-use super::{BACKGROUND, BackgroundError, Blob, FOREGROUND, blobs, check_range};
+use super::{
+    BACKGROUND, BackgroundError, Blob, FOREGROUND, blobs, check_range, morphology::spread, regions::runs,
+};
 
 /// How a mask is cleaned. The defaults are those of the well-known MATLAB example of tracking in atrium.mp4.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -88,14 +85,12 @@ impl MaskCleaner {
         for value in mask.iter_mut() {
             *value = if *value == FOREGROUND { FOREGROUND } else { BACKGROUND };
         }
-        // The morphology is by the chessboard distance: a square of 2 k + 1 pixels is what is within k.
-        let reach = |side: usize| (side / 2) as u8;
-        if self.clean_up.opening > 1 {
-            open_mut(&mut mask, Norm::LInf, reach(self.clean_up.opening));
-        }
-        if self.clean_up.closing > 1 {
-            close_mut(&mut mask, Norm::LInf, reach(self.clean_up.closing));
-        }
+        // A square of 2 k + 1 pixels is what is within k.
+        let (opening, closing) = (self.clean_up.opening / 2, self.clean_up.closing / 2);
+        spread(&mut mask, BACKGROUND, opening);
+        spread(&mut mask, FOREGROUND, opening);
+        spread(&mut mask, FOREGROUND, closing);
+        spread(&mut mask, BACKGROUND, closing);
         if self.clean_up.fill_holes {
             fill_holes(&mut mask);
         }
@@ -110,24 +105,23 @@ impl MaskCleaner {
 
 /// Step 4. Background is 4-connected where objects are 8-connected.
 fn fill_holes(mask: &mut GrayImage) {
-    let labels = connected_components(mask, Connectivity::Four, Luma([FOREGROUND]));
-    let (width, height) = labels.dimensions();
-    let most = labels.iter().copied().max().unwrap_or(0) as usize;
-    let mut touches_border = vec![false; most + 1];
-    for (x, y, label) in labels.enumerate_pixels() {
-        if x == 0 || y == 0 || x + 1 == width || y + 1 == height {
-            touches_border[label.0[0] as usize] = true;
-        }
+    let (width, height) = mask.dimensions();
+    let runs = runs(mask, BACKGROUND, false);
+    let mut touches_border = vec![false; runs.len()];
+    for run in &runs {
+        let at_border = run.row == 0 || run.row + 1 == height || run.start == 0 || run.end == width;
+        touches_border[run.region] |= at_border;
     }
-    for (value, label) in mask.iter_mut().zip(labels.iter()) {
-        if *value == BACKGROUND && !touches_border[*label as usize] {
-            *value = FOREGROUND;
-        }
+    for run in runs.iter().filter(|run| !touches_border[run.region]) {
+        let row = run.row as usize * width as usize;
+        (**mask)[row + run.start as usize..row + run.end as usize].fill(FOREGROUND);
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use image::Luma;
+
     use super::*;
     use crate::background::SHADOW;
     use proptest::prelude::*;

@@ -30,8 +30,10 @@
 mod blobs;
 mod clean_up;
 mod model;
+mod morphology;
 mod parameters;
 mod pixel;
+mod regions;
 
 pub use blobs::Blob;
 pub use clean_up::{CheckedCleanUp, CleanUp, MaskCleaner};

@@ -5,6 +5,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 use infopart::program;
 
+mod auto_init;
 mod background;
 mod config;
 mod demo;
@@ -22,6 +23,7 @@ Examples:
   infopart demo                                  see it work; needs no data
   infopart track Crossing --out boxes.txt        an OTB folder
   infopart track video.mp4 --init 120,80,40,110  a video, the first box given
+  infopart track video.mp4 --init auto           a static camera: what moves first is tracked
   infopart config > my.toml                      parameters to edit
 
 Exit codes:

@@ -9,7 +9,7 @@ use infopart::{
     output::{Summary, tracker_title},
     program::{self, BadInput},
     run::{RunReport, run},
-    sequence::{self, OpenOptions},
+    sequence::{self, OpenOptions, Sequence},
     tracker::{
         CheckedParameters, InfoPart, Tracker,
         colour::{CheckedColourParameters, ColourTracker},
@@ -18,11 +18,12 @@ use infopart::{
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use super::{
+    auto_init,
     first_box::FirstBox,
     outputs::Outputs,
     parameters::ParameterArgs,
     several::{SeveralReport, track_several},
-    values::{Format, TrackerName, parse_box, parse_count, parse_origin},
+    values::{Format, Init, TrackerName, parse_count, parse_init, parse_origin},
 };
 
 pub const EXAMPLES: &str = "\
@@ -30,6 +31,7 @@ Examples:
   infopart track Crossing --out boxes.txt        first box from the ground truth
   infopart track Jogging --target 2              one of its several targets
   infopart track video.mp4 --init 120,80,40,110  a video, the first box given
+  infopart track video.mp4 --init auto --target 2  a static camera: the second object that moves
   infopart track 'shots/*.png' --init 5,9,32,80 --out a.csv --annotate seen.mp4
   infopart track Crossing --region whole --json --quiet > /dev/null
   infopart track ships.avi --tracker colour --init 9,40,60,25 --init 200,52,48,20 --out ships.txt
@@ -65,10 +67,11 @@ pub struct TrackArgs {
     #[arg(long, value_name = "infopart|colour", default_value = "infopart")]
     tracker: TrackerName,
     /// The target's box in the first frame: left, top, width, height in pixels; with --tracker colour it may be
-    /// given several times, once a target [default: the ground truth's]
-    #[arg(long, value_name = "X,Y,W,H", value_parser = parse_box, allow_hyphen_values = true)]
-    init: Vec<Rect>,
-    /// Which target of an OTB folder that has several: the K of groundtruth_rect.K.txt
+    /// given several times, once a target; or auto, before a static camera: the first object that moves for 15 frames,
+    /// from then on [default: the ground truth's]
+    #[arg(long, value_name = "X,Y,W,H|auto", value_parser = parse_init, allow_hyphen_values = true)]
+    init: Vec<Init>,
+    /// Which target of an OTB folder that has several: the K of groundtruth_rect.K.txt; with --init auto the K-th object
     #[arg(long, value_name = "K", value_parser = parse_count)]
     target: Option<usize>,
     /// The number of the first pixel, in --init, the ground truth and the rows [default: 1 for OTB folders, else 0]
@@ -115,10 +118,10 @@ enum Chosen {
 pub fn track(args: &TrackArgs) -> Result<()> {
     let chosen = args.chosen()?;
     let pool = args.threads.map(thread_pool).transpose()?;
-    let mut sequence = sequence::open(&args.input, &args.open_options())?;
-    let init = match (args.init.as_slice(), &chosen) {
+    let (mut sequence, boxes) = args.open()?;
+    let init = match (boxes.as_slice(), &chosen) {
         ([_, _, ..], Chosen::Colour(parameters)) => {
-            let report = track_several(args, &args.init, sequence, parameters.clone(), pool)?;
+            let report = track_several(args, &boxes, sequence, parameters.clone(), pool)?;
             tell_several(args, &report);
             return Ok(());
         }
@@ -170,6 +173,40 @@ impl TrackArgs {
             TrackerName::Infopart => Chosen::InfoPart(self.parameters.resolve()?),
             TrackerName::Colour => Chosen::Colour(self.parameters.resolve_colour()?),
         })
+    }
+
+    /// The frames from the first to track on, and the boxes of --init as the input counts.
+    fn open(&self) -> Result<(Sequence, Vec<Rect>)> {
+        match self.init.as_slice() {
+            [Init::Auto] => self.open_auto(),
+            given => {
+                let boxes = given.iter().map(|init| match init {
+                    Init::Box(given) => Ok(*given),
+                    Init::Auto => {
+                        Err(BadInput("--init auto: give it alone, without other --init".to_owned()))
+                    }
+                });
+                let boxes = boxes.collect::<Result<_, _>>()?;
+                Ok((sequence::open(&self.input, &self.open_options())?, boxes))
+            }
+        }
+    }
+
+    fn open_auto(&self) -> Result<(Sequence, Vec<Rect>)> {
+        let options = OpenOptions { target: None, ..self.open_options() };
+        let number = self.target.unwrap_or(1);
+        let found = auto_init::find(&self.input, &options, number)?;
+        let options = OpenOptions { start: Some(found.frame), ..options };
+        let sequence = sequence::open(&self.input, &options)?;
+        let as_given = sequence.origin.from_frame(found.box_in_frame);
+        if !self.quiet {
+            let Rect { x, y, w, h } = as_given;
+            let (first_seen, frame) = (found.first_seen, found.frame);
+            eprintln!(
+                "object {number}, seen from frame {first_seen} on, is the target from frame {frame} on: {x},{y},{w},{h}"
+            );
+        }
+        Ok((sequence, vec![as_given]))
     }
 
     fn open_options(&self) -> OpenOptions {

@@ -30,6 +30,23 @@ pub fn parse_box(text: &str) -> Result<Rect, String> {
     Ok(given)
 }
 
+/// Where the first box comes from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Init {
+    /// It is given.
+    Box(Rect),
+    /// It is that of what moves first.
+    Auto,
+}
+
+/// `X,Y,W,H` or `auto`.
+pub fn parse_init(text: &str) -> Result<Init, String> {
+    match text.trim() {
+        "auto" => Ok(Init::Auto),
+        given => parse_box(given).map(Init::Box),
+    }
+}
+
 /// `0` or `1`.
 pub fn parse_origin(text: &str) -> Result<Origin, String> {
     match text {

@@ -44,7 +44,7 @@ pub(super) fn status_ink(status: Status) -> Ink {
 }
 
 /// A view's pixels as an RGB picture of the same size.
-pub(super) fn rgb_from_view(view: FrameView<'_>) -> RgbImage {
+pub fn rgb_from_view(view: FrameView<'_>) -> RgbImage {
     let step = view.format().bytes_per_pixel();
     let [red, green, blue] = view.format().rgb_offsets();
     let mut picture = RgbImage::new(view.width() as u32, view.height() as u32);

@@ -7,25 +7,29 @@ use crate::geometry::Rect;
 
 /// A colour and how much of it is laid over what is there.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Ink {
+pub struct Ink {
+    /// Red, green, blue.
     pub colour: [u8; 3],
     /// Opacity in [0, 1].
     pub alpha: f64,
 }
 
 impl Ink {
-    pub(super) const fn solid(colour: [u8; 3]) -> Self {
+    /// A colour that hides what is below.
+    pub const fn solid(colour: [u8; 3]) -> Self {
         Self { colour, alpha: 1.0 }
     }
 
-    pub(super) const fn faded(self, alpha: f64) -> Self {
+    /// The same colour with this opacity.
+    pub const fn faded(self, alpha: f64) -> Self {
         Self { alpha, ..self }
     }
 }
 
 /// How the edges of a box are drawn.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Stroke {
+pub struct Stroke {
+    /// Its colour.
     pub ink: Ink,
     /// Width of the line, pixels, centred on the edge.
     pub thickness: f64,
@@ -45,14 +49,14 @@ fn blend(picture: &mut RgbImage, x: i64, y: i64, ink: Ink, coverage: f64) {
 }
 
 /// Fills `area`.
-pub(super) fn fill_rect(picture: &mut RgbImage, area: Rect, ink: Ink) {
+pub fn fill_rect(picture: &mut RgbImage, area: Rect, ink: Ink) {
     for_pixels_of(picture, area, |picture, x, y| {
         blend(picture, x, y, ink, covered(area, x, y));
     });
 }
 
 /// Draws the edges of `area`.
-pub(super) fn stroke_rect(picture: &mut RgbImage, area: Rect, stroke: Stroke) {
+pub fn stroke_rect(picture: &mut RgbImage, area: Rect, stroke: Stroke) {
     if !area.is_proper() {
         return;
     }
@@ -90,7 +94,7 @@ fn in_dash(outer: Rect, side: Rect, x: i64, y: i64, length: f64) -> bool {
 }
 
 /// Fills a disc.
-pub(super) fn fill_disc(picture: &mut RgbImage, centre: (f64, f64), radius: f64, ink: Ink) {
+pub fn fill_disc(picture: &mut RgbImage, centre: (f64, f64), radius: f64, ink: Ink) {
     let reach = radius + 1.0;
     let around = Rect::new(centre.0 - reach, centre.1 - reach, 2.0 * reach, 2.0 * reach);
     for_pixels_of(picture, around, |picture, x, y| {
@@ -100,16 +104,16 @@ pub(super) fn fill_disc(picture: &mut RgbImage, centre: (f64, f64), radius: f64,
 }
 
 /// Height of a line of text at `scale` 1, pixels.
-pub(super) const LINE_HEIGHT: u32 = 16;
+pub const LINE_HEIGHT: u32 = 16;
 
 /// Width of `text` at `scale`, pixels.
-pub(super) fn text_width(text: &str, scale: u32) -> u32 {
+pub fn text_width(text: &str, scale: u32) -> u32 {
     let letter = get_raster_width(FontWeight::Regular, RasterHeight::Size16) as u32;
     letter * scale * text.chars().count() as u32
 }
 
 /// Writes `text` with its top left corner at (`x`, `y`), letters `scale` times as large. Letters outside ASCII become `?`.
-pub(super) fn draw_text(picture: &mut RgbImage, text: &str, (x, y): (i64, i64), scale: u32, ink: Ink) {
+pub fn draw_text(picture: &mut RgbImage, text: &str, (x, y): (i64, i64), scale: u32, ink: Ink) {
     let letter_width = i64::from(text_width("x", scale));
     for (index, letter) in text.chars().enumerate() {
         let glyph = |letter| get_raster(letter, FontWeight::Regular, RasterHeight::Size16);

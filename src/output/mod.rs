@@ -9,7 +9,7 @@ use crate::{
 };
 
 mod annotate;
-mod canvas;
+pub mod canvas;
 mod contact_sheet;
 mod destination;
 mod error;
@@ -23,7 +23,7 @@ mod summary;
 pub(crate) mod testing;
 mod video;
 
-pub use annotate::annotate;
+pub use annotate::{annotate, rgb_from_view};
 pub use contact_sheet::{ContactSheet, SheetSampler, Tile};
 pub use destination::{Destination, StandardOutput};
 pub use error::OutputError;

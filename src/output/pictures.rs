@@ -28,12 +28,20 @@ impl PictureFolder {
         fs::create_dir_all(folder).map_err(|source| OutputError::Io { path: folder.to_owned(), source })?;
         Ok(Self { folder: folder.to_owned() })
     }
+
+    /// Writes the picture of frame `number`.
+    ///
+    /// # Errors
+    /// [`OutputError`] if that is impossible.
+    pub fn write(&self, picture: &RgbImage, number: usize) -> Result<(), OutputError> {
+        let path = self.folder.join(format!("{number:06}.jpg"));
+        write_jpeg(picture, &path).map_err(|source| OutputError::Picture { path, source })
+    }
 }
 
 impl Observer for PictureFolder {
     fn on_frame(&mut self, event: &FrameEvent<'_>) -> Result<(), OutputError> {
-        let path = self.folder.join(format!("{:06}.jpg", event.number));
-        write_jpeg(&annotate(event), &path).map_err(|source| OutputError::Picture { path, source })
+        self.write(&annotate(event), event.number)
     }
 }
 

@@ -51,6 +51,19 @@ impl VideoWriter {
         Ok(Self { file, program, container: container(path), waiting: Vec::new(), encoder: None })
     }
 
+    /// Adds a picture, of the size of those before, with its time in the source. The video is whole after
+    /// [`finish`](Observer::finish).
+    ///
+    /// # Errors
+    /// [`OutputError`] if ffmpeg does not take it.
+    pub fn write(&mut self, picture: RgbImage, time: Option<Duration>) -> Result<(), OutputError> {
+        if self.encoder.is_some() {
+            return self.encode(&picture);
+        }
+        self.waiting.push((picture, time));
+        if time.is_some() && self.waiting.len() < FRAMES_FOR_RATE { Ok(()) } else { self.start() }
+    }
+
     /// Starts ffmpeg on the pictures that wait.
     fn start(&mut self) -> Result<(), OutputError> {
         let waiting = std::mem::take(&mut self.waiting);
@@ -104,12 +117,7 @@ impl VideoWriter {
 
 impl Observer for VideoWriter {
     fn on_frame(&mut self, event: &FrameEvent<'_>) -> Result<(), OutputError> {
-        let picture = annotate(event);
-        if self.encoder.is_some() {
-            return self.encode(&picture);
-        }
-        self.waiting.push((picture, event.time));
-        if event.time.is_some() && self.waiting.len() < FRAMES_FOR_RATE { Ok(()) } else { self.start() }
+        self.write(annotate(event), event.time)
     }
 
     fn finish(&mut self) -> Result<(), OutputError> {

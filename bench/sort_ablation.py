@@ -1,0 +1,78 @@
+#!/usr/bin/env python3
+"""What changes in SORT change: filters, noise, how long lost tracks are kept, colours in the association.
+
+Runs `mot sort` and `mot score` on each sequence of mot/ that has ground truth and prints IDF1, ID switches, fragments, MOTA and
+HOTA. Colours need frames: give the video or folder of a sequence with --frames NAME=PATH; sequences without are left out of
+those rows. Needs `cargo build --release --workspace`.
+"""
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+PROJECT = Path(__file__).resolve().parent.parent
+FILTERS = ("kalman", "ekf", "ukf", "pf")
+
+
+def fail(message):
+    print(f"error: {message}", file=sys.stderr)
+    sys.exit(2)
+
+
+def run(command):
+    done = subprocess.run([str(word) for word in command], capture_output=True, text=True)
+    if done.returncode != 0:
+        fail(f"{command[0]} {command[1]} ended with {done.returncode}: {done.stderr.strip()}")
+
+
+def scores(program, folder, flags, scratch):
+    result, report = scratch / "result.txt", scratch / "scores.json"
+    run([program, "sort", folder / "det/det.txt", *flags, "--out", result])
+    run([program, "score", folder / "gt/gt.txt", result, "--json", report])
+    return json.loads(report.read_text())["sequences"][0]["scores"]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    add = parser.add_argument
+    add("--mot", type=Path, default=PROJECT / "target/release/mot", help="the program [default: target/release/mot]")
+    add("--data", type=Path, default=os.environ.get("INFOPART_DATA"), help="the folder that holds mot/ [default: INFOPART_DATA]")
+    add("--frames", nargs="*", default=[], metavar="NAME=PATH", help="the frames of a sequence")
+    add("--max-age", nargs="*", type=int, default=[1, 5, 30], metavar="FRAMES", help="[default: 1 5 30]")
+    add("--seeds", type=int, default=5, help="seeds of the particle filter, whose rows are means [default: 5]")
+    options = parser.parse_args()
+    frames = dict(given.split("=", 1) for given in options.frames)
+    folders = [path.parent.parent for path in sorted(Path(options.data or "").glob("mot/*/gt/gt.txt"))]
+    if not folders:
+        fail("no mot/SEQ/gt/gt.txt: give the folder that holds mot/ with --data")
+    options.mot = options.mot.resolve()
+    if not os.access(options.mot, os.X_OK):
+        fail(f"no program at {options.mot}: run `cargo build --release --workspace`, or give its path with --mot")
+    print("sequence        noise         filter  max-age  colours   IDF1  IDSW    FM   MOTA   HOTA")
+    with tempfile.TemporaryDirectory() as scratch:
+        for folder in folders:
+            for noise in ("reference", "proportional"):
+                for name in FILTERS:
+                    for age in options.max_age:
+                        for colours in (False, True) if folder.name in frames else (False,):
+                            row(options, folder, noise, name, age, frames[folder.name] if colours else None, Path(scratch))
+
+
+def row(options, folder, noise, name, age, frames, scratch):
+    flags = ["--noise", noise, "--filter", name, "--max-age", age] + (["--frames", frames] if frames else [])
+    seeds = range(1, options.seeds + 1) if name == "pf" else [1]
+    found = [scores(options.mot, folder, [*flags, "--seed", seed], scratch) for seed in seeds]
+    mean = lambda key: sum(one[key] for one in found) / len(found)
+    print(
+        f"{folder.name:15} {noise:13} {name:7} {age:7}  {'on' if frames else 'off':7} {100 * mean('idf1'):6.1f}"
+        f" {mean('switches'):5.0f} {mean('fragments'):5.0f} {100 * mean('mota'):6.1f} {100 * mean('hota'):6.1f}",
+        flush=True,
+    )
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,173 @@
+//! `mot score`: a table of scores, a row a sequence.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::Result;
+use clap::{Args, ValueEnum};
+use infopart::program::BadInput;
+use multi_object::{
+    motchallenge::{MotError, read_ground_truth, read_tracks, sequence_name},
+    scoring::{Counts, Rules, Scores},
+};
+
+use super::{deliver, text_table::TextTable};
+
+pub const EXAMPLES: &str = "\
+Examples:
+  mot score mot/PETS09-S2L1/gt/gt.txt result.txt
+  mot score mot/A/gt/gt.txt a.txt mot/B/gt/gt.txt b.txt --json scores.json
+  mot score mot/train results --rules trackeval
+
+GT and RESULT are files of MOTChallenge text, or two folders: GT/SEQ/gt/gt.txt goes with RESULT/SEQ.txt. Ground truth \
+counts where its confidence (seventh field) is 1; a match needs an overlap of 0.5.
+Columns: IDF1 IDP IDR, recall, precision, GT objects, mostly / partly tracked, mostly lost, false positives, misses, \
+identity switches, fragments, MOTA, MOTP (mean of 1 - overlap), transfers, ascents, migrations, MOTPo (mean overlap), \
+FAR (false positives a frame), HOTA, DetA, AssA.";
+
+/// The row of all sequences together.
+const OVERALL: &str = "OVERALL";
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum RulesArg {
+    /// py-motmetrics
+    Motmetrics,
+    /// TrackEval, as the MOTChallenge server
+    Trackeval,
+}
+
+#[derive(Debug, Args)]
+pub struct ScoreArgs {
+    /// Ground truth and result, in turn: files, or one folder each
+    #[arg(required = true, num_args = 2.., value_names = ["GT", "RESULT"])]
+    pairs: Vec<PathBuf>,
+    /// Whose rules: how matches are chosen, what is mostly tracked, what a fragment is
+    #[arg(long, value_enum, default_value = "motmetrics")]
+    rules: RulesArg,
+    /// Also write the scores, with all digits, as JSON
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+}
+
+/// Ground truth and result of one sequence.
+struct Pair {
+    name: String,
+    truth: PathBuf,
+    result: PathBuf,
+}
+
+pub fn score(args: &ScoreArgs) -> Result<()> {
+    let rules = match args.rules {
+        RulesArg::Motmetrics => Rules::Motmetrics,
+        RulesArg::Trackeval => Rules::Trackeval,
+    };
+    let mut counts = Vec::new();
+    for pair in pairs(&args.pairs)? {
+        let truth = read_ground_truth(&pair.truth)?;
+        let result = read_tracks(&pair.result)?;
+        if result.is_empty() {
+            eprintln!(
+                "warning: {}: no row in it: scored as a tracker that found nothing",
+                pair.result.display()
+            );
+        }
+        counts.push((pair.name, Counts::of(&truth, &result, rules)));
+    }
+    let mut scores: Vec<(String, Scores)> =
+        counts.iter().map(|(name, counts)| (name.clone(), counts.scores())).collect();
+    if let Some(total) = Counts::total(counts.iter().map(|(_, counts)| counts)).filter(|_| counts.len() > 1) {
+        scores.push((OVERALL.to_owned(), total.scores()));
+    }
+    if let Some(path) = &args.json {
+        deliver(Some(path), &format!("{}\n", json(rules, &scores)?))?;
+    }
+    deliver(None, &table(&scores))
+}
+
+fn pairs(given: &[PathBuf]) -> Result<Vec<Pair>> {
+    if let [truth, result] = given
+        && truth.is_dir()
+    {
+        return folders(truth, result);
+    }
+    if given.len() % 2 == 1 {
+        let last = given.last().map(|path| path.display().to_string()).unwrap_or_default();
+        let message = format!("{last}: ground truth without a result; give GT RESULT for each sequence");
+        return Err(BadInput(message).into());
+    }
+    Ok(given
+        .chunks_exact(2)
+        .map(|pair| Pair { name: sequence_name(&pair[0]), truth: pair[0].clone(), result: pair[1].clone() })
+        .collect())
+}
+
+/// GT/SEQ/gt/gt.txt with RESULT/SEQ.txt, by name.
+fn folders(truth: &Path, result: &Path) -> Result<Vec<Pair>> {
+    let unreadable = |source| MotError::Unreadable { path: truth.to_owned(), source };
+    let mut pairs = Vec::new();
+    for entry in std::fs::read_dir(truth).map_err(unreadable)? {
+        let entry = entry.map_err(unreadable)?;
+        let name = entry.file_name().to_string_lossy().into_owned();
+        let file = entry.path().join("gt/gt.txt");
+        if file.is_file() {
+            pairs.push(Pair { result: result.join(format!("{name}.txt")), name, truth: file });
+        }
+    }
+    pairs.sort_by(|a, b| a.name.cmp(&b.name));
+    let missing: Vec<String> =
+        pairs.iter().filter(|pair| !pair.result.is_file()).map(|pair| format!("{}.txt", pair.name)).collect();
+    if !missing.is_empty() {
+        let what =
+            format!("no {}; give a result for each sequence, or GT RESULT by file", missing.join(", "));
+        return Err(MotError::Sequences { path: result.to_owned(), what }.into());
+    }
+    if pairs.is_empty() {
+        let what = "no SEQ/gt/gt.txt in it; give the folder that holds the sequences".to_owned();
+        return Err(MotError::Sequences { path: truth.to_owned(), what }.into());
+    }
+    Ok(pairs)
+}
+
+fn json(rules: Rules, scores: &[(String, Scores)]) -> Result<String> {
+    let sequences: Vec<serde_json::Value> = (scores.iter())
+        .map(|(name, scores)| {
+            Ok(serde_json::json!({ "sequence": name, "scores": serde_json::to_value(scores)? }))
+        })
+        .collect::<Result<_, serde_json::Error>>()?;
+    let program = format!("mot {}", infopart::VERSION);
+    Ok(serde_json::to_string_pretty(&serde_json::json!({
+        "program": program, "rules": rules, "minimum_overlap": 0.5, "sequences": sequences,
+    }))?)
+}
+
+fn table(scores: &[(String, Scores)]) -> String {
+    let mut table = TextTable::new([
+        "", "IDF1", "IDP", "IDR", "Rcll", "Prcn", "GT", "MT", "PT", "ML", "FP", "FN", "IDs", "FM", "MOTA",
+        "MOTP", "IDt", "IDa", "IDm", "MOTPo", "FAR", "HOTA", "DetA", "AssA",
+    ]);
+    for (name, one) in scores {
+        let percent =
+            |value: Option<f64>| value.map_or("-".to_owned(), |value| format!("{:.1}%", 100.0 * value));
+        let plain = |value: Option<f64>| value.map_or("-".to_owned(), |value| format!("{value:.3}"));
+        let count = |value: Option<usize>| value.map_or("-".to_owned(), |value| value.to_string());
+        let shares = [one.idf1, one.idp, one.idr, one.recall, one.precision].map(percent);
+        let counts = [
+            one.objects,
+            one.mostly_tracked,
+            one.partially_tracked,
+            one.mostly_lost,
+            one.false_positives,
+            one.misses,
+            one.switches,
+            one.fragments,
+        ];
+        let mut cells = vec![name.clone()];
+        cells.extend(shares);
+        cells.extend(counts.map(|count| count.to_string()));
+        cells.extend([percent(one.mota), plain(one.motp_distance)]);
+        cells.extend([one.transfers, one.ascents, one.migrations].map(count));
+        cells.extend([one.motp_overlap, one.false_positives_per_frame].map(plain));
+        cells.extend([one.hota, one.deta, one.assa].map(percent));
+        table.row(cells);
+    }
+    table.to_string()
+}
