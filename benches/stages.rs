@@ -32,7 +32,7 @@ const POOL: usize = 300;
 const STUMPS: usize = 40;
 const FIRST_SAMPLES: usize = 90;
 const RECENT_SAMPLES: usize = 400;
-const BOOSTING: BoostingOptions = BoostingOptions { rounds: STUMPS, balanced: true };
+const BOOSTING: BoostingOptions = BoostingOptions { rounds: STUMPS, balanced: true, turns: 1 };
 
 /// Frames of the walker, and the person's box in each.
 fn walk() -> (Vec<Frame>, Vec<Rect>) {

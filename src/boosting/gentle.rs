@@ -194,7 +194,7 @@ mod tests {
 
     fn train(samples: &[(Vec<f32>, Label)], rounds: usize, balanced: bool) -> StrongClassifier {
         let mut classifier = StrongClassifier::default();
-        GentleAdaBoost::new(BoostingOptions { rounds, balanced }).train(&memory_of(samples), &mut classifier);
+        GentleAdaBoost::new(BoostingOptions { rounds, balanced, turns: 1 }).train(&memory_of(samples), &mut classifier);
         classifier
     }
 
@@ -327,9 +327,30 @@ mod tests {
             assert_eq!(train(&only, 3, balanced).score(|_| 1.0), 3.0);
         }
         let mut classifier = StrongClassifier::default();
-        GentleAdaBoost::new(BoostingOptions { rounds: 3, balanced: true })
+        GentleAdaBoost::new(BoostingOptions { rounds: 3, balanced: true, turns: 1 })
             .train(&SampleMemory::new(4, 2, 2), &mut classifier);
         assert_eq!(classifier.score(|_| 1.0), 0.0);
+    }
+
+    #[test]
+    fn in_turns_a_round_finds_the_best_of_its_own_features() {
+        // Feature 0 separates the labels; the features of the second block of lanes only tell most of them apart.
+        let sample = |i: usize| {
+            let mut values = vec![0.0; 2 * LANES];
+            values[0] = i as f32;
+            values[LANES] = if i.is_multiple_of(5) { 0.0 } else { i as f32 };
+            (values, if i < 10 { Label::Background } else { Label::Target })
+        };
+        let samples: Vec<_> = (0..20).map(sample).collect();
+        let features = |turns| {
+            let mut classifier = StrongClassifier::default();
+            let options = BoostingOptions { rounds: 4, balanced: true, turns };
+            GentleAdaBoost::new(options).train(&memory_of(&samples), &mut classifier);
+            classifier.stumps().iter().map(|stump| stump.feature).collect::<Vec<_>>()
+        };
+        assert_eq!(features(1), [0, 0, 0, 0]);
+        assert_eq!(features(2), [0, LANES, 0, LANES]);
+        assert_eq!(features(100), features(2), "there are no more turns than blocks");
     }
 
     #[test]
