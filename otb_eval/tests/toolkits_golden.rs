@@ -126,7 +126,8 @@ fn table(dataset: &Dataset, results: &Path, rules: Rules) -> Table {
         sequences: None,
         attributes: None,
         undo_scale: false,
-        accept_lengths: false,
+        // Three of the published files have other lengths than the truth; the rules say what becomes of them.
+        accept_lengths: true,
     };
     let (table, problems) = score(dataset, &results, &options);
     assert_eq!((table.trackers.len(), table.sequences.len(), problems.len()), (11, 100, 0));

@@ -43,7 +43,7 @@ pub enum JobFailure {
 /// Runs a job to its end, or until `stop` is true. A tracker that panics fails its job, not the run.
 ///
 /// # Errors
-/// A [`JobFailure`] says what is wrong and what to do.
+/// A failure says what is wrong and what to do.
 pub fn execute(job: &Job, factory: &dyn TrackerFactory, stop: &AtomicBool) -> Result<Recording, JobFailure> {
     let outcome = catch_unwind(AssertUnwindSafe(|| track(job, factory, stop)));
     outcome.unwrap_or_else(|panic| {
