@@ -12,10 +12,10 @@ rivals.py.
 import argparse
 import json
 import os
+import subprocess
 import tempfile
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-import subprocess
 
 import numpy as np
 
@@ -125,11 +125,11 @@ def hidden(passes):
             lowest = min(row["overlap"] for row in after if row["overlap"] is not None)
             tracking = sum(row["status"] == "tracking" for row in after)
             counts = ", ".join(f"{said.count(status)} {status}" for status in ("tracking", "uncertain", "lost"))
-            lines.append([name, seed, f"{first}-{last}: {counts}", f"from {again}: {tracking} of {len(after)} tracking, overlap >= {lowest:.2f}"])
+            lines.append([name, str(seed), f"{first}-{last}: {counts}", f"from {again}: {tracking} of {len(after)} tracking, overlap >= {lowest:.2f}"])
     for name, first, last in DIPS:
         for _, seed, frames in (one for one in passes if one[0] == name):
             said = [row["confidence"] for row in frames]
-            lines.append([name, seed, f"{first}-{last}: confidence down to {min(said[first - 1:last]):.2f}", f"median of all {np.median(said):.2f}"])
+            lines.append([name, str(seed), f"{first}-{last}: confidence down to {min(said[first - 1:last]):.2f}", f"median of all {np.median(said):.2f}"])
     print(table(["sequence", "seed", "while hidden", "else"], lines))
 
 
@@ -168,6 +168,7 @@ def main():
     options = parser.parse_args()
     if not os.access(options.infopart, os.X_OK):
         fail(f"no program at {options.infopart}: run `cargo build --release`, or give its path with --infopart")
+    rivals.np = np  # rivals.py loads it only with its own main
     data = data_folder(options.data)
     program = Path(options.infopart).resolve()
     sequences = [(name, "part") for name in PEOPLE8] + [(name, "whole") for name in OTHER7]
