@@ -1,5 +1,7 @@
 //! The values that flags take. clap puts the flag's name before each message.
 
+use std::num::NonZeroUsize;
+
 use clap::ValueEnum;
 use infopart::{
     geometry::{Origin, Rect},
@@ -47,6 +49,11 @@ pub fn parse_count(text: &str) -> Result<usize, String> {
         Ok(count) if count > 0 => Ok(count),
         _ => Err("give a whole number from 1 on".to_owned()),
     }
+}
+
+/// A count from 1 on, as the type that has no 0.
+pub fn parse_stride(text: &str) -> Result<NonZeroUsize, String> {
+    parse_count(text).and_then(|count| NonZeroUsize::new(count).ok_or_else(|| "give 1 or more".to_owned()))
 }
 
 /// A finite number above 0.
