@@ -194,7 +194,8 @@ mod tests {
 
     fn train(samples: &[(Vec<f32>, Label)], rounds: usize, balanced: bool) -> StrongClassifier {
         let mut classifier = StrongClassifier::default();
-        GentleAdaBoost::new(BoostingOptions { rounds, balanced }).train(&memory_of(samples), &mut classifier);
+        GentleAdaBoost::new(BoostingOptions { rounds, balanced, turns: 1 })
+            .train(&memory_of(samples), &mut classifier);
         classifier
     }
 
@@ -327,7 +328,7 @@ mod tests {
             assert_eq!(train(&only, 3, balanced).score(|_| 1.0), 3.0);
         }
         let mut classifier = StrongClassifier::default();
-        GentleAdaBoost::new(BoostingOptions { rounds: 3, balanced: true })
+        GentleAdaBoost::new(BoostingOptions { rounds: 3, balanced: true, turns: 1 })
             .train(&SampleMemory::new(4, 2, 2), &mut classifier);
         assert_eq!(classifier.score(|_| 1.0), 0.0);
     }
