@@ -13,6 +13,11 @@ use infopart::{
         resampling::Resampling,
     },
     boosting::{BoostingOptions, GentleAdaBoost, Label, SampleMemory, StrongClassifier},
+    correlation::{
+        filter::{CorrelationFilter, FilterOptions},
+        grid::{CHANNELS, Grid},
+        window::Window,
+    },
     features::{
         haar::HaarFeature,
         hog::Hog,
@@ -27,12 +32,17 @@ use rand::{Rng, RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 // The sizes of the default parameters.
-const PARTICLES: usize = 800;
-const POOL: usize = 300;
-const STUMPS: usize = 40;
+const PARTICLES: usize = 300;
+const POOL: usize = 150;
+const STUMPS: usize = 20;
+const TURNS: usize = 5;
 const FIRST_SAMPLES: usize = 90;
-const RECENT_SAMPLES: usize = 400;
-const BOOSTING: BoostingOptions = BoostingOptions { rounds: STUMPS, balanced: true, turns: 1 };
+const RECENT_SAMPLES: usize = 120;
+const BOOSTING: BoostingOptions = BoostingOptions { rounds: STUMPS, balanced: true, turns: TURNS };
+const CELLS: usize = 32;
+const WINDOW: f64 = 4.0;
+const FILTER: FilterOptions =
+    FilterOptions { side: CELLS, label_sigma: 0.0625, temporal: 30.0, rounds: 2, support: 1.3 };
 
 /// Frames of the walker, and the person's box in each.
 fn walk() -> (Vec<Frame>, Vec<Rect>) {
@@ -45,6 +55,7 @@ fn walk() -> (Vec<Frame>, Vec<Rect>) {
 /// A search region with its integral images, and boxes in it as a frame's particles are.
 struct Scene {
     frame: Frame,
+    full: Rect,
     part: Rect,
     integrals: RegionIntegrals,
     hypotheses: Vec<BoxInRegion>,
@@ -56,7 +67,7 @@ impl Scene {
         let frame = frames.swap_remove(0);
         let part = Region::Part.part_from_full(truth[0]);
         let mut integrals = RegionIntegrals::default();
-        integrals.compute(&frame.view(), search_region(&part));
+        integrals.compute(&frame.view(), search_region(&truth[0]));
         let mut rng = rng();
         let hypotheses = (0..PARTICLES)
             .map(|_| {
@@ -65,7 +76,7 @@ impl Scene {
                 integrals.to_region(moved)
             })
             .collect();
-        Self { frame, part, integrals, hypotheses }
+        Self { frame, full: truth[0], part, integrals, hypotheses }
     }
 
     fn pool(&self) -> Vec<HaarFeature> {
@@ -74,10 +85,9 @@ impl Scene {
     }
 }
 
-/// A part and as much around it as particles usually reach.
-fn search_region(part: &Rect) -> SearchRegion {
-    let field = Rect::new(part.x - part.w, part.y - part.h, 3.0 * part.w, 3.0 * part.h);
-    SearchRegion::around(field, 1)
+/// The correlation filter's window around a target.
+fn search_region(full: &Rect) -> SearchRegion {
+    SearchRegion::around(Window::around(full, WINDOW).to_rect(), 1)
 }
 
 fn rng() -> ChaCha8Rng {
@@ -97,31 +107,66 @@ fn memory(samples: usize, rng: &mut impl Rng) -> SampleMemory {
 
 fn features(c: &mut Criterion) {
     let scene = Scene::new();
-    let Scene { frame, part, hypotheses, .. } = &scene;
+    let Scene { frame, full, hypotheses, .. } = &scene;
     let mut integrals = scene.integrals.clone();
-    let region = search_region(part);
-    c.bench_function("integral images of the search region", |b| {
+    let region = search_region(full);
+    c.bench_function("integral images of the window", |b| {
         b.iter(|| integrals.compute(black_box(&frame.view()), region));
     });
     let coarse = SearchRegion::around(
         Rect::new(region.x as f64, region.y as f64, region.width as f64, region.height as f64),
         2,
     );
-    c.bench_function("integral images, 2 x 2 pixels a cell", |b| {
+    c.bench_function("integral images of the window, 2 x 2 pixels a cell", |b| {
         b.iter(|| integrals.compute(black_box(&frame.view()), coarse));
     });
     let integrals = &scene.integrals;
     let read_by_stumps = &scene.pool()[..STUMPS];
-    c.bench_function("Haar-like features, 40 x 800 boxes", |b| {
+    c.bench_function("Haar-like features, 20 x 300 boxes", |b| {
         b.iter(|| {
             let of = |hypothesis| read_by_stumps.iter().map(move |f| f.evaluate(integrals, hypothesis));
             hypotheses.iter().flat_map(of).sum::<f32>()
         });
     });
     let template = Hog::of(integrals, &hypotheses[0]);
-    c.bench_function("HOG and its distance, 800 boxes", |b| {
+    c.bench_function("HOG and its distance, 300 boxes", |b| {
         let distance = |hypothesis| Hog::of(integrals, hypothesis).squared_distance(&template);
         b.iter(|| hypotheses.iter().map(distance).sum::<f32>());
+    });
+}
+
+/// The correlation filter: cells of the window, its response, and learning for the first time and later.
+fn correlation(c: &mut Criterion) {
+    let Scene { full, integrals, .. } = Scene::new();
+    let window = Window::around(&full, WINDOW);
+    let mut grid = Grid::new(CELLS);
+    c.bench_function("grid of 32 x 32 cells", |b| {
+        b.iter(|| grid.describe(black_box(&integrals), window, 1.0));
+    });
+    let (width, height) = (full.w / window.side, full.h / window.side);
+    let fresh = CorrelationFilter::new(FILTER, CHANNELS, width, height);
+    c.bench_function("correlation, learning in the first frame", |b| {
+        b.iter_batched_ref(
+            || fresh.clone(),
+            |filter| filter.learn(black_box(grid.planes())),
+            BatchSize::SmallInput,
+        );
+    });
+    let mut filter = fresh.clone();
+    filter.learn(grid.planes());
+    c.bench_function("correlation, learning in a later frame", |b| {
+        b.iter(|| filter.learn(black_box(grid.planes())));
+    });
+    c.bench_function("correlation, response and its peak", |b| {
+        b.iter(|| filter.respond(black_box(grid.planes()), window).peak());
+    });
+    let centres: Vec<(f64, f64)> = {
+        let mut rng = rng();
+        let mut reach = || rng.random_range(-full.w..full.w);
+        (0..PARTICLES).map(|_| (window.x + reach(), window.y + reach())).collect()
+    };
+    c.bench_function("correlation, response at 300 places", |b| {
+        b.iter(|| centres.iter().map(|&(x, y)| filter.response().at(x, y)).sum::<f32>());
     });
 }
 
@@ -133,12 +178,12 @@ fn likelihood(c: &mut Criterion) {
     let template = Hog::of(integrals, &integrals.to_region(scene.part));
     let mut classifier = StrongClassifier::default();
     GentleAdaBoost::new(BOOSTING).train(&memory(FIRST_SAMPLES, &mut rng()), &mut classifier);
-    c.bench_function("likelihood, 800 boxes, 1 thread", |b| {
+    c.bench_function("likelihood, 300 boxes, 1 thread", |b| {
         b.iter(|| {
             let of = |hypothesis: &BoxInRegion| {
                 let score = classifier.score(|k| pool[k].evaluate(integrals, hypothesis));
                 let distance = Hog::of(integrals, hypothesis).squared_distance(&template);
-                3.0 / (STUMPS as f32).sqrt() * score - 20.0 * distance
+                1.5 / (STUMPS as f32).sqrt() * score - 20.0 * distance
             };
             scene.hypotheses.iter().map(of).sum::<f32>()
         });
@@ -146,12 +191,13 @@ fn likelihood(c: &mut Criterion) {
 }
 
 fn training(c: &mut Criterion) {
-    for (name, samples) in [
-        ("training, 90 samples x 300 features x 40 rounds", FIRST_SAMPLES),
-        ("training, 490 samples x 300 features x 40 rounds", FIRST_SAMPLES + RECENT_SAMPLES),
+    for (name, samples, turns) in [
+        ("training, 90 samples x 150 features x 20 rounds, 5 turns", FIRST_SAMPLES, TURNS),
+        ("training, 210 samples x 150 features x 20 rounds, 5 turns", FIRST_SAMPLES + RECENT_SAMPLES, TURNS),
+        ("training, 210 samples x 150 features x 20 rounds, 1 turn", FIRST_SAMPLES + RECENT_SAMPLES, 1),
     ] {
         let memory = memory(samples, &mut rng());
-        let mut trainer = GentleAdaBoost::new(BOOSTING);
+        let mut trainer = GentleAdaBoost::new(BoostingOptions { turns, ..BOOSTING });
         let mut classifier = StrongClassifier::default();
         c.bench_function(name, |b| b.iter(|| trainer.train(black_box(&memory), &mut classifier)));
     }
@@ -174,17 +220,17 @@ fn filtering(c: &mut Criterion) {
     let sum: f64 = raw.iter().sum();
     let weights: Vec<f64> = raw.iter().map(|weight| weight / sum).collect();
     for (name, scheme) in [
-        ("resampling, multinomial, 800 particles", Resampling::Multinomial),
-        ("resampling, stratified, 800 particles", Resampling::Stratified),
-        ("resampling, systematic, 800 particles", Resampling::Systematic),
-        ("resampling, residual, 800 particles", Resampling::Residual),
+        ("resampling, multinomial, 300 particles", Resampling::Multinomial),
+        ("resampling, stratified, 300 particles", Resampling::Stratified),
+        ("resampling, systematic, 300 particles", Resampling::Systematic),
+        ("resampling, residual, 300 particles", Resampling::Residual),
     ] {
         let (mut rng, mut ancestors) = (rng(), Vec::with_capacity(PARTICLES));
         c.bench_function(name, |b| b.iter(|| scheme.draw(black_box(&weights), &mut rng, &mut ancestors)));
     }
     let walk = RandomWalk::new(State::<3>::new(1.0, 1.0, 0.1));
     let start = ParticleFilter::new(vec![State::zeros(); PARTICLES], ParticleFilterOptions::default());
-    c.bench_function("particle filter, 800 particles, trivial likelihood", |b| {
+    c.bench_function("particle filter, 300 particles, trivial likelihood", |b| {
         let mut rng = rng();
         b.iter_batched_ref(
             || start.clone(),
@@ -197,8 +243,13 @@ fn filtering(c: &mut Criterion) {
 /// Whole updates, the training of every fourth frame among them. The walk runs forth and back, so that it never ends.
 fn updates(c: &mut Criterion) {
     let (frames, truth) = walk();
-    for (name, region) in [("update, part", Region::Part), ("update, whole", Region::Whole)] {
-        let mut parameters = Parameters::default();
+    for (name, preset, region) in [
+        ("update, part", "default", Region::Part),
+        ("update, whole", "default", Region::Whole),
+        ("update, preset paper, part", "paper", Region::Part),
+        ("update, preset paper, whole", "paper", Region::Whole),
+    ] {
+        let mut parameters = Parameters::preset(preset).expect("a preset of this name");
         parameters.region = region;
         let mut tracker = InfoPart::new(parameters.check().expect("the defaults are valid"));
         tracker.init(frames[0].view(), truth[0]).expect("the walker starts inside the frame");
@@ -212,5 +263,5 @@ fn updates(c: &mut Criterion) {
     }
 }
 
-criterion_group!(stages, features, likelihood, training, filtering, updates);
+criterion_group!(stages, features, correlation, likelihood, training, filtering, updates);
 criterion_main!(stages);

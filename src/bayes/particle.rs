@@ -22,6 +22,8 @@ use super::{
 
 /// Particles that one thread weighs at a time.
 const CHUNK: usize = 16;
+/// Ratios of densities that a thread computes at least.
+const RATIOS_PER_TASK: usize = 128;
 
 /// How a particle filter normalises, resamples and estimates.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -133,17 +135,32 @@ impl<const N: usize, S: Resample> ParticleFilter<N, S> {
         }
     }
 
-    /// Step 1 with a proposal of its own; the weights take p / q.
+    /// Step 1 with a proposal of its own; the weights take p / q. Particles are drawn one after another, as in
+    /// [`predict`](Self::predict), and then compared in parallel with where they came from.
     pub fn propose<R: Rng + ?Sized>(
         &mut self,
-        proposal: &impl Proposal<N>,
-        transition: &impl Transition<N>,
+        proposal: &(impl Proposal<N> + Sync),
+        transition: &(impl Transition<N> + Sync),
         rng: &mut R,
     ) {
-        for (state, log_weight) in self.states.iter_mut().zip(&mut self.log_weights) {
-            let next = proposal.sample(state, rng);
-            *log_weight += transition.log_density(&next, state) - proposal.log_density(&next, state);
-            *state = next;
+        self.spare.clear();
+        self.spare.extend(self.states.iter().map(|state| proposal.sample(state, rng)));
+        std::mem::swap(&mut self.states, &mut self.spare);
+        let add_ratio = |log_weight: &mut f64, next: &State<N>, state: &State<N>| {
+            *log_weight += transition.log_density(next, state) - proposal.log_density(next, state);
+        };
+        if self.on_one_thread {
+            for ((log_weight, next), state) in self.log_weights.iter_mut().zip(&self.states).zip(&self.spare)
+            {
+                add_ratio(log_weight, next, state);
+            }
+        } else {
+            self.log_weights
+                .par_iter_mut()
+                .zip(&self.states)
+                .zip(&self.spare)
+                .with_min_len(RATIOS_PER_TASK)
+                .for_each(|((log_weight, next), state)| add_ratio(log_weight, next, state));
         }
     }
 

@@ -194,7 +194,8 @@ mod tests {
 
     fn train(samples: &[(Vec<f32>, Label)], rounds: usize, balanced: bool) -> StrongClassifier {
         let mut classifier = StrongClassifier::default();
-        GentleAdaBoost::new(BoostingOptions { rounds, balanced, turns: 1 }).train(&memory_of(samples), &mut classifier);
+        GentleAdaBoost::new(BoostingOptions { rounds, balanced, turns: 1 })
+            .train(&memory_of(samples), &mut classifier);
         classifier
     }
 

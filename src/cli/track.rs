@@ -1,6 +1,6 @@
 //! `infopart track`: from an input and a box to rows, pictures and a summary.
 
-use std::{path::PathBuf, sync::Arc};
+use std::{num::NonZeroUsize, path::PathBuf, sync::Arc};
 
 use anyhow::{Context, Result};
 use clap::Args;
@@ -8,7 +8,7 @@ use infopart::{
     geometry::{Origin, Rect, Region},
     output::{Summary, tracker_title},
     program::{self, BadInput},
-    run::{RunReport, run},
+    run::{Pace, RunReport, run_at},
     sequence::{self, OpenOptions, Sequence},
     tracker::{
         CheckedParameters, InfoPart, Tracker,
@@ -23,7 +23,9 @@ use super::{
     outputs::Outputs,
     parameters::ParameterArgs,
     several::{SeveralReport, track_several},
-    values::{Format, Init, TrackerName, parse_count, parse_init, parse_origin},
+    values::{
+        Format, Init, TrackerName, parse_count, parse_init, parse_origin, parse_positive, parse_stride,
+    },
 };
 
 pub const EXAMPLES: &str = "\
@@ -35,6 +37,8 @@ Examples:
   infopart track 'shots/*.png' --init 5,9,32,80 --out a.csv --annotate seen.mp4
   infopart track Crossing --region whole --json --quiet > /dev/null
   infopart track ships.avi --tracker colour --init 9,40,60,25 --init 200,52,48,20 --out ships.txt
+  infopart track Crossing --stride 3             every third frame; the others are predicted
+  infopart track Crossing --realtime 30          as with a camera of 30 frames per second
 
 Rows: one a frame from the first tracked on, which holds the first box. A lost target has a row too: the best guess.
 
@@ -45,6 +49,10 @@ Pictures: the box is green while tracking, orange if uncertain, red if lost; thi
 the particles, dashed white the ground truth. An annotated video has one constant rate, that of the input's first \
 five frames (25 a second for images): an input of variable rate is seen faster or slower than it was. The true time \
 of each frame is in csv and jsonl rows.
+
+Skipped frames: with --stride and --realtime the frames that the tracker does not get have rows too. Their box goes on \
+at the velocity of the last two tracked ones known at that time, their status and confidence are those of the last, \
+and their effective sample size is 0. They count in R1, R2 and AUC.
 
 Parameters: --config over --preset, and --region, --particles and --seed over both.
 
@@ -95,6 +103,13 @@ pub struct TrackArgs {
     /// needs ffmpeg)
     #[arg(long, value_name = "DIR|FILE.mp4")]
     pub annotate: Option<PathBuf>,
+    /// Track only every K-th frame from the first on, and predict the boxes between
+    #[arg(long, value_name = "K", value_parser = parse_stride, conflicts_with = "realtime")]
+    stride: Option<NonZeroUsize>,
+    /// Let frames arrive at this rate, as from a camera with a buffer of one frame: those that arrive while tracking is
+    /// busy are skipped, and their boxes predicted. It depends on measured times, so the boxes differ from run to run
+    #[arg(long, value_name = "FPS", value_parser = parse_positive)]
+    realtime: Option<f64>,
     /// How many threads weigh particles; the boxes do not depend on it [default: one a core]
     #[arg(long, value_name = "N", value_parser = parse_count)]
     threads: Option<usize>,
@@ -137,7 +152,8 @@ pub fn track(args: &TrackArgs) -> Result<()> {
     let interrupted = program::watch().context("Ctrl-C cannot be watched for")?;
     let threads = pool.as_ref().map_or_else(rayon::current_num_threads, |pool| pool.current_num_threads());
     let mut tracker = chosen.start(pool);
-    let report = run(
+    let report = run_at(
+        args.pace(),
         sequence.source.as_mut(),
         &sequence.ground_truth,
         tracker.as_mut(),
@@ -211,6 +227,14 @@ impl TrackArgs {
 
     fn open_options(&self) -> OpenOptions {
         OpenOptions { target: self.target, start: self.start, end: self.end, origin: self.origin }
+    }
+
+    fn pace(&self) -> Pace {
+        match (self.stride, self.realtime) {
+            (Some(stride), _) => Pace::Stride(stride),
+            (None, Some(frames_per_second)) => Pace::RealTime { frames_per_second },
+            (None, None) => Pace::EveryFrame,
+        }
     }
 }
 

@@ -1,5 +1,7 @@
 //! The values that flags take. clap puts the flag's name before each message.
 
+use std::num::NonZeroUsize;
+
 use clap::ValueEnum;
 use infopart::{
     geometry::{Origin, Rect},
@@ -73,6 +75,11 @@ pub enum TrackerName {
     Infopart,
     /// The colour-histogram particle filter
     Colour,
+}
+
+/// A count from 1 on, as the type that has no 0.
+pub fn parse_stride(text: &str) -> Result<NonZeroUsize, String> {
+    parse_count(text).and_then(|count| NonZeroUsize::new(count).ok_or_else(|| "give 1 or more".to_owned()))
 }
 
 /// A finite number above 0.

@@ -165,7 +165,7 @@ impl CorrelationFilter {
         let mut rho = RHO;
         for _ in 0..self.options.rounds {
             self.fit_labels(mu, rho);
-            self.confine();
+            self.confine(mu, rho);
             rho *= RHO_GROWTH;
         }
         for Channel { filter, g, .. } in &mut self.channels {
@@ -174,32 +174,38 @@ impl CorrelationFilter {
         self.learnt = true;
     }
 
-    /// Step 1. With q = x conj(y) / T + mu f_before + rho (g - h), T the number of cells,
-    ///   f = (q - x (x^H q) / (T (mu + rho) + x^H x)) / (mu + rho).
+    /// Step 1 up to the sum over channels. With q = x conj(y) / T + mu f_before + rho (g - h), T the number of cells,
+    ///   f = (q - x (x^H q) / (T (mu + rho) + x^H x)) / (mu + rho):
+    /// f holds q, and `product` the fraction. Each channel is a thread's, the sum runs over them in order.
     fn fit_labels(&mut self, mu: f32, rho: f32) {
         let area = (self.options.side * self.options.side) as f32;
+        let label = &self.label;
+        self.channels.par_iter_mut().with_min_len(CHANNELS_PER_TASK).for_each(|channel| {
+            let Channel { x, f, g, h, filter, .. } = channel;
+            let known = x.iter().zip(label).zip(filter.iter());
+            for ((f, ((x, y), before)), (g, h)) in f.iter_mut().zip(known).zip(g.iter().zip(h.iter())) {
+                *f = x * y.conj() / area + before * mu + (g - h) * rho;
+            }
+        });
         self.product.fill(Complex32::default());
-        for Channel { x, f, g, h, filter, .. } in &mut self.channels {
-            for (k, sum) in self.product.iter_mut().enumerate() {
-                f[k] = x[k] * self.label[k].conj() / area + filter[k] * mu + (g[k] - h[k]) * rho;
-                *sum += x[k].conj() * f[k];
+        for Channel { x, f, .. } in &self.channels {
+            for ((sum, x), f) in self.product.iter_mut().zip(x).zip(f) {
+                *sum += x.conj() * f;
             }
         }
         for (sum, energy) in self.product.iter_mut().zip(&self.energy) {
             *sum /= area * (mu + rho) + energy;
         }
-        for Channel { x, f, .. } in &mut self.channels {
-            for (k, product) in self.product.iter().enumerate() {
-                f[k] = (f[k] - x[k] * product) / (mu + rho);
-            }
-        }
     }
 
-    /// Steps 2 and 3.
-    fn confine(&mut self) {
-        let (support, fourier) = (&self.support, &self.fourier);
+    /// The end of step 1, and steps 2 and 3.
+    fn confine(&mut self, mu: f32, rho: f32) {
+        let (support, fourier, product) = (&self.support, &self.fourier, &self.product);
         self.channels.par_iter_mut().with_min_len(CHANNELS_PER_TASK).for_each(|channel| {
-            let Channel { f, g, h, image, scratch, .. } = channel;
+            let Channel { x, f, g, h, image, scratch, .. } = channel;
+            for ((f, x), product) in f.iter_mut().zip(x.iter()).zip(product) {
+                *f = (*f - x * product) / (mu + rho);
+            }
             for ((g, f), h) in g.iter_mut().zip(f.iter()).zip(h.iter()) {
                 *g = f + h;
             }

@@ -53,8 +53,10 @@ pub struct FrameEvent<'a> {
     pub tracker: &'a dyn Tracker,
     /// What is odd about the first box; empty in every frame but the first.
     pub warnings: &'a [BoxWarning],
-    /// Wall time of `init` (first frame) or `update`.
+    /// Wall time of `init` (first frame) or `update`; zero if the tracker did not get the frame.
     pub tracking_time: Duration,
+    /// Whether the tracker did not get this frame: the estimate is then a prediction from its answers before.
+    pub predicted: bool,
     /// Wall time of getting the frame from its source.
     pub decoding_time: Duration,
 }

@@ -4,7 +4,10 @@ use std::fmt::Write;
 
 use serde::Serialize;
 
-use crate::{geometry::Region, run::RunReport};
+use crate::{
+    geometry::Region,
+    run::{Pace, RunReport},
+};
 
 /// What a run came to. Serialised, it is one flat JSON object but for `scores`, `warnings` and `stages`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -52,6 +55,9 @@ impl Summary {
         line("tracker", format!("{}, region {}, preset {}", self.tracker, self.region, self.preset));
         line("frames", frames_text(report));
         line("speed", speed_text(report, self.threads));
+        if report.pace != Pace::EveryFrame {
+            line("pace", pace_text(report));
+        }
         line(
             "apart",
             format!(
@@ -72,7 +78,7 @@ impl Summary {
             line("AUC", format!("{:>6.3}    area under the success curve", scores.auc));
         }
         if timing {
-            let updates = report.frames.saturating_sub(1).max(1) as f64;
+            let updates = report.updates().max(1) as f64;
             line(
                 "timing",
                 format!("{:>9.3} ms  update (mean of a frame)", 1e3 * report.update_seconds / updates),
@@ -105,6 +111,14 @@ fn frames_text(report: &RunReport) -> String {
     text
 }
 
+fn pace_text(report: &RunReport) -> String {
+    let mut text = format!("{}: {} of {} frames skipped", report.pace, report.skipped_frames, report.frames);
+    if let Some(rate) = report.sustained_frames_per_second {
+        text += &format!("; {rate:.1} frames per second can be borne without skipping more");
+    }
+    text
+}
+
 fn speed_text(report: &RunReport, threads: usize) -> String {
     let plural = if threads == 1 { "" } else { "s" };
     match report.frames_per_second {
@@ -125,6 +139,9 @@ mod tests {
             tracking_frames: 8,
             uncertain_frames: 2,
             lost_frames: 1,
+            pace: Pace::EveryFrame,
+            skipped_frames: 0,
+            sustained_frames_per_second: Some(150.0),
             update_seconds: 0.05,
             frames_per_second: Some(200.0),
             init_seconds: 0.012,
@@ -172,8 +189,25 @@ mod tests {
         ] {
             assert!(text.contains(part), "{part} is not in\n{text}");
         }
-        assert!(!text.contains("likelihood"));
+        assert!(!text.contains("likelihood") && !text.contains("skipped"));
         assert!(summary().to_text(true).contains("3.250 ms    likelihood"));
+    }
+
+    #[test]
+    fn a_pace_tells_what_was_skipped_and_what_rate_can_be_borne() {
+        let mut summary = summary();
+        summary.report.pace = Pace::RealTime { frames_per_second: 240.0 };
+        summary.report.skipped_frames = 4;
+        let text = summary.to_text(false);
+        let line =
+            "pace       real time at 240 per second: 4 of 11 frames skipped; 150.0 frames per second can";
+        assert!(text.contains(line), "{text}");
+        let value: serde_json::Value = serde_json::from_str(&summary.to_json(false).unwrap()).unwrap();
+        assert_eq!(
+            (&value["skipped_frames"], &value["pace"]),
+            (&4.into(), &"real time at 240 per second".into())
+        );
+        assert_eq!(value["sustained_frames_per_second"], 150.0);
     }
 
     #[test]

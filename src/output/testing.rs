@@ -49,6 +49,7 @@ impl EventParts {
             tracker: &self.tracker,
             warnings: &[],
             tracking_time: Duration::from_micros(2500),
+            predicted: false,
             decoding_time: Duration::ZERO,
         }
     }

@@ -1,10 +1,10 @@
 //! The loop on literal frames.
 
-use std::path::PathBuf;
+use std::{num::NonZeroUsize, path::PathBuf, sync::atomic::AtomicU64};
 
 use super::*;
 use crate::{
-    frame::{Frame, PixelFormat},
+    frame::{Frame, FrameView, PixelFormat},
     output::testing::StillTracker,
 };
 
@@ -155,7 +155,99 @@ fn stage_means_are_over_updates() {
     add_stages(&mut totals, &[time("a", 2), time("b", 3)]);
     add_stages(&mut totals, &[time("a", 4)]);
     let report = RunReport { frames: 3, ..RunReport::default() };
-    let progress = Progress { report, last_good: None, scored: Vec::new(), stage_totals: totals };
-    let means: Vec<f64> = progress.into_report().stages.iter().map(|mean| mean.mean_milliseconds).collect();
+    let progress = Progress {
+        report,
+        last_good: None,
+        scored: Vec::new(),
+        stage_totals: totals,
+        update_seconds: Vec::new(),
+    };
+    let means: Vec<f64> =
+        progress.into_report(Pace::EveryFrame).stages.iter().map(|mean| mean.mean_milliseconds).collect();
     assert!((means[0] - 3.0).abs() < 1e-9 && (means[1] - 1.5).abs() < 1e-9, "{means:?}");
+}
+
+/// Moves by two pixels a frame, by the frame's number, and takes so long for an update as its clock is told to go on.
+struct SteadyTracker<'a> {
+    first: Rect,
+    seen: Vec<u64>,
+    clock_millis: &'a AtomicU64,
+    update_millis: u64,
+}
+
+impl Tracker for SteadyTracker<'_> {
+    fn name(&self) -> &str {
+        "Steady"
+    }
+
+    fn init(&mut self, _: FrameView<'_>, given: Rect) -> Result<Vec<BoxWarning>, TrackError> {
+        self.first = given;
+        Ok(Vec::new())
+    }
+
+    fn update_at(&mut self, _: FrameView<'_>, stamp: FrameStamp) -> Result<Estimate, TrackError> {
+        let index = stamp.index.unwrap();
+        self.seen.push(index);
+        self.clock_millis.fetch_add(self.update_millis, Ordering::Relaxed);
+        let moved = self.first.translated(2.0 * index as f64, 0.0);
+        Ok(Estimate::new(moved, moved, 0.9, Status::Tracking))
+    }
+
+    fn estimate(&self) -> Option<&Estimate> {
+        None
+    }
+}
+
+/// Left edges of all rows.
+#[derive(Default)]
+struct Lefts(Vec<f64>);
+
+impl Observer for Lefts {
+    fn on_frame(&mut self, event: &FrameEvent<'_>) -> Result<(), OutputError> {
+        self.0.push(event.estimate.box_in_frame.x - BOX.x);
+        Ok(())
+    }
+}
+
+/// What the tracker saw, what the rows said and the report, of ten frames with updates of `millis`.
+fn paced(pace: Pace, millis: u64) -> (Vec<u64>, Vec<f64>, RunReport) {
+    let (clock, mut lefts) = (AtomicU64::new(0), Lefts::default());
+    let mut tracker =
+        SteadyTracker { first: BOX, seen: Vec::new(), clock_millis: &clock, update_millis: millis };
+    let truth: Vec<_> = (0..10).map(|i| Some(BOX.translated(2.0 * f64::from(i), 0.0))).collect();
+    let now = || Duration::from_millis(clock.load(Ordering::Relaxed));
+    let mut session = Session::new(pace, &mut tracker, BOX, &now);
+    session.all_frames(&mut frames(10), &truth, &mut [&mut lefts], &AtomicBool::new(false)).unwrap();
+    let report = session.progress.into_report(pace);
+    (tracker.seen, lefts.0, report)
+}
+
+#[test]
+fn with_a_stride_the_frames_between_are_predicted_and_scored() {
+    let stride = |k| Pace::Stride(NonZeroUsize::new(k).unwrap());
+    let (seen, lefts, report) = paced(stride(3), 20);
+    assert_eq!(seen, [3, 6, 9]);
+    // Before the second answer there is no velocity; then the constant one is right.
+    assert_eq!(lefts, [0.0, 0.0, 0.0, 6.0, 8.0, 10.0, 12.0, 14.0, 16.0, 18.0]);
+    assert_eq!((report.frames, report.skipped_frames, report.updates()), (10, 6, 3));
+    assert_eq!(report.scores.unwrap().frames, 10);
+    assert!((report.update_seconds - 0.06).abs() < 1e-12);
+    assert!((report.sustained_frames_per_second.unwrap() - 150.0).abs() < 1e-6, "three frames an update");
+    let (seen, lefts, report) = paced(stride(1), 20);
+    assert_eq!((seen.len(), lefts[9], report.skipped_frames), (9, 18.0, 0));
+}
+
+#[test]
+fn in_real_time_frames_that_a_busy_tracker_misses_are_answered_from_what_is_known_then() {
+    let at = |frames_per_second| Pace::RealTime { frames_per_second };
+    let (seen, lefts, report) = paced(at(10.0), 240);
+    // 1 is done at 340 ms, 3 (waiting since 300) at 580, 5 (waiting since 500) at 820, 8 at 1060.
+    assert_eq!(seen, [1, 3, 5, 8]);
+    // While 3 is worked on, only 0 and 1 are known: 4 goes on from these.
+    assert_eq!(lefts, [0.0, 2.0, 0.0, 6.0, 8.0, 10.0, 12.0, 14.0, 16.0, 18.0]);
+    assert_eq!(report.skipped_frames, 5);
+    let sustained = report.sustained_frames_per_second.unwrap();
+    assert!((sustained - 1.0 / 0.24).abs() < 1e-6, "{sustained}");
+    assert_eq!(paced(at(sustained), 240).2.skipped_frames, 0);
+    assert_eq!(paced(at(1e9), 240).0, [1], "a tracker that is never free again");
 }

@@ -104,7 +104,8 @@ impl InfoPart {
     fn in_pool<T: Send>(&mut self, work: impl FnOnce(&mut Self) -> T + Send) -> T {
         match self.pool.clone() {
             Some(pool) => pool.install(|| work(self)),
-            None => work(self),
+            // Into rayon's pool once, instead of once for each loop that it shares out.
+            None => rayon::scope(|_| work(self)),
         }
     }
 
