@@ -42,7 +42,7 @@ impl Scene {
     /// Boxes of three sequences in `boxes.json`, six frames each, and results of `good` and `other` in `results/`.
     pub fn with_results() -> Self {
         let scene = Self::empty();
-        let rows = vec!["[10, 20, 30, 40]"; 6].join(", ");
+        let rows = ["[10, 20, 30, 40]"; 6].join(", ");
         let entry = |name: &str| format!("\"{name}\": {{\"gt_rect\": [{rows}]}}");
         scene.write("boxes.json", &format!("{{{}}}", ["Ann", "Bob", "Cid"].map(entry).join(", ")));
         for tracker in ["good", "other"] {
