@@ -9,7 +9,7 @@ mod job;
 mod plan;
 mod pool;
 
-pub use execute::{Recording, execute};
+pub use execute::{JobFailure, Recording, execute};
 pub use factory::{FactoryError, InfoPartFactory, TrackerFactory, named_factory};
 pub use job::{Job, stem};
 
