@@ -8,6 +8,7 @@ The numbers are those of the program's own summary. Needs `cargo build --release
 import argparse
 import json
 import os
+import random
 import statistics
 import subprocess
 import tempfile
@@ -16,6 +17,7 @@ from pathlib import Path
 
 from rivals import OURS, PEOPLE8, PROJECT, data_folder, fail, locate, table
 
+RESAMPLES = 2000
 VARIANTS = {"part": [], "whole": ["--region", "whole"], "paper": ["--preset", "paper"]}
 OTHER7 = "Deer David DragonBaby FaceOcc1 Freeman1 Football1 Diving".split()
 LISTS = {"people8": PEOPLE8, "other7": OTHER7}
@@ -38,13 +40,25 @@ def cell(passes):
     return f"{r1:.2f} ({min(of('r1')):.1f}) / {r2:.2f} / {auc:.3f} ± {statistics.pstdev(of('auc')):.3f}"
 
 
+def difference(by_sequence):
+    """Mean of paired differences and its bootstrap interval: sequences are drawn, and seeds within each."""
+    draw = random.Random(1)
+    mean = lambda rows: statistics.fmean(statistics.fmean(row) for row in rows)
+    means = sorted(
+        mean([draw.choices(row, k=len(row)) for row in draw.choices(by_sequence, k=len(by_sequence))])
+        for _ in range(RESAMPLES)
+    )
+    low, high = means[RESAMPLES // 40], means[-1 - RESAMPLES // 40]
+    return f"{mean(by_sequence):+.3f} [{low:+.3f}, {high:+.3f}]"
+
+
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     add = parser.add_argument
     add("--sequences", nargs="+", default=["people8"], metavar="NAME", help="people8, other7, NAME or NAME-K [default: people8]")
     add("--variants", nargs="*", default=list(VARIANTS), choices=VARIANTS, help="[default: all]")
     add("--set", nargs="+", default=[], metavar="KEY=VALUE[,...]", help="more variants: the default with other parameters")
-    add("--means", action="store_true", help="a row a variant with its mean AUC on each sequence, instead of whole cells")
+    add("--means", action="store_true", help="a row a variant with its mean AUC on each sequence and its difference from the first, instead of whole cells")
     add("--seeds", type=int, default=5, help="seeds 1 to this [default: 5]")
     add("--infopart", default=PROJECT / "target/release/infopart", help="the program [default: target/release/infopart]")
     add("--data", help="the folder that holds otb/ and people/ [default: INFOPART_DATA]")
@@ -88,7 +102,14 @@ def compare(options, configured):
     if options.means:
         print(f"{OURS}, seeds 1-{options.seeds}: mean AUC\n")
         row = lambda way: [*(f"{statistics.mean(aucs(name, way)):.3f}" for name in names), f"{means[way]:.3f}"]
-        print(table(["", *names, "mean"], [[way, *row(way)] for way in ways]))
+        first = next(iter(ways))
+        lines = [
+            [way, *row(way), "" if way == first else difference(
+                [[a - b for a, b in zip(aucs(name, way), aucs(name, first))] for name in names]
+            )]
+            for way in ways
+        ]
+        print(table(["", *names, "mean", f"less {first} [95 %]"], lines))
     else:
         print(f"{OURS}, seeds 1-{options.seeds}: R1 (worst seed) / R2 / AUC ± standard deviation over seeds\n")
         rows = [[name, *(cell(found[name, way]) for way in ways)] for name in names]

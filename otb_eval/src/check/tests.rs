@@ -141,14 +141,14 @@ fn a_sequence_with_other_rows_than_the_benchmark_is_damage() {
 
 #[test]
 fn boxes_decide_three_attributes() {
-    let still = vec![Rect::new(10.0, 10.0, 20.0, 20.0); 3];
+    let still = [Rect::new(10.0, 10.0, 20.0, 20.0); 3];
     let has = |truth: &[Rect]| {
         let measured = measure(truth).unwrap();
         [Attribute::ScaleVariation, Attribute::FastMotion, Attribute::LowResolution]
             .map(|attribute| measured.has(attribute).unwrap())
     };
     assert_eq!(has(&still), [false, false, false]);
-    let with = |row: Rect| vec![still[0], row, still[0]];
+    let with = |row: Rect| [still[0], row, still[0]];
     // Twice the area and a step of 20 pixels are still within bounds.
     assert_eq!(has(&with(Rect::new(5.0, 10.0, 40.0, 20.0))), [false, false, false]);
     assert_eq!(has(&with(Rect::new(10.0, 10.0, 41.0, 20.0))), [true, false, false]);

@@ -121,8 +121,7 @@ fn files_are_where_and_as_each_toolkit_looks_for_them() {
 
 #[test]
 fn seeds_become_runs_or_trackers_of_their_own() {
-    let mut two = vec![track("Walk", Protocol::Ope, None, vec![box_at(1.0)]); 2];
-    (two[0].seed, two[1].seed) = (1, 2);
+    let two = [1, 2].map(|seed| Track { seed, ..track("Walk", Protocol::Ope, None, vec![box_at(1.0)]) });
     assert_eq!(round_trip(Layout::Pytracking, &two), two);
     assert_eq!(round_trip(Layout::Run, &two), two);
     let names: Vec<String> = round_trip(Layout::Flat, &two).into_iter().map(|track| track.tracker).collect();

@@ -9,7 +9,7 @@ mod job;
 mod plan;
 mod pool;
 
-pub use execute::{Recording, execute};
+pub use execute::{JobFailure, Recording, execute};
 pub use factory::{ColourFactory, FactoryError, InfoPartFactory, NAMES, TrackerFactory, named_factory};
 pub use job::{Job, stem};
 
