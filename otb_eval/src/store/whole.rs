@@ -50,9 +50,15 @@ fn temporary_beside(path: &Path) -> io::Result<(File, PathBuf)> {
     name.push(path.file_name().unwrap_or(path.as_os_str()));
     name.push(format!(".{}{SUFFIX}", process::id()));
     let temporary = path.with_file_name(name);
-    let file = File::create(&temporary)?;
-    file.lock()?;
-    Ok((file, temporary))
+    loop {
+        let file = File::create(&temporary)?;
+        file.lock()?;
+        // Between the two calls another process may have taken the file for one that was left, and removed it before
+        // it let the lock go.
+        if temporary.exists() {
+            return Ok((file, temporary));
+        }
+    }
 }
 
 /// Removes what killed writers left in a folder and the folders in it.
@@ -108,6 +114,21 @@ mod tests {
         assert!(!write_new(&path, b"two").unwrap());
         assert_eq!(fs::read(&path).unwrap(), b"one");
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn writers_and_removers_do_not_disturb_each_other() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |i: usize| folder.path().join(format!("{i}.txt"));
+        std::thread::scope(|scope| {
+            let writer = scope.spawn(|| (0..2000).try_for_each(|i| write_whole(&path(i), b"whole")));
+            while !writer.is_finished() {
+                // A folder that changes while it is read may name files that are gone; nothing else may fail.
+                remove_stale(folder.path()).unwrap();
+            }
+            writer.join().unwrap().unwrap();
+        });
+        assert!((0..2000).all(|i| path(i).exists()));
     }
 
     #[test]
