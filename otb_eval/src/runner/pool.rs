@@ -149,14 +149,18 @@ impl Worker {
         let Some(factory) = factories.iter().find(|factory| factory.name() == job.tracker) else {
             return Some(Outcome::Failed(format!("nobody makes the tracker `{}`", job.tracker)));
         };
+        let started = Instant::now();
+        let out_of_time = || {
+            let seconds = self.timeout.unwrap_or_default().as_secs_f64();
+            Some(Outcome::Failed(format!("it took longer than --timeout {seconds}; give it more seconds")))
+        };
         match execute(job, factory.as_ref(), &self.stop) {
+            // The watch looks only now and then: a job may end between its time and the next look.
+            Ok(_) if self.timeout.is_some_and(|timeout| started.elapsed() > timeout) => out_of_time(),
             Ok(recording) => Some(Outcome::Done(recording)),
             Err(JobFailure::Failed(reason)) => Some(Outcome::Failed(reason)),
             Err(JobFailure::Stopped) if self.closing.load(Ordering::Relaxed) => None,
-            Err(JobFailure::Stopped) => Some(Outcome::Failed(format!(
-                "it took longer than --timeout {}; give it more seconds",
-                self.timeout.unwrap_or_default().as_secs_f64()
-            ))),
+            Err(JobFailure::Stopped) => out_of_time(),
         }
     }
 
