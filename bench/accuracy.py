@@ -15,7 +15,7 @@ import tempfile
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from rivals import OURS, PEOPLE8, PROJECT, data_folder, fail, locate, table
+from rivals import OURS, PEOPLE8, PROJECT, data_folder, executable, fail, locate, table
 
 RESAMPLES = 2000
 VARIANTS = {"part": [], "whole": ["--region", "whole"], "paper": ["--preset", "paper"]}
@@ -63,9 +63,7 @@ def arguments():
     add("--infopart", default=PROJECT / "target/release/infopart", help="the program [default: target/release/infopart]")
     add("--data", help="the folder that holds otb/ and people/ [default: INFOPART_DATA]")
     options = parser.parse_args()
-    options.infopart = Path(options.infopart).resolve()
-    if not os.access(options.infopart, os.X_OK):
-        fail(f"no program at {options.infopart}: run `cargo build --release`, or give its path with --infopart")
+    options.infopart = executable(options.infopart)
     return options
 
 

@@ -8,7 +8,6 @@ area. Needs `cargo build --release`; data as for rivals.py: video/view1_vtest.av
 
 import argparse
 import csv
-import os
 import subprocess
 import tempfile
 from collections import defaultdict
@@ -16,7 +15,7 @@ from pathlib import Path
 
 import cv2
 import numpy as np
-from rivals import PROJECT, data_folder, fail, table
+from rivals import PROJECT, data_folder, executable, fail, table
 
 
 def ours(options, video, folder):
@@ -86,9 +85,7 @@ def arguments():
     add("--infopart", default=PROJECT / "target/release/infopart", help="the program [default: target/release/infopart]")
     add("--data", help="the folder that holds video/ and mot/ [default: INFOPART_DATA]")
     options = parser.parse_args()
-    options.infopart = Path(options.infopart).resolve()
-    if not os.access(options.infopart, os.X_OK):
-        fail(f"no program at {options.infopart}: run `cargo build --release`, or give its path with --infopart")
+    options.infopart = executable(options.infopart)
     return options
 
 

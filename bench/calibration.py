@@ -20,8 +20,7 @@ from pathlib import Path
 import numpy as np
 
 from accuracy import OTHER7
-import rivals
-from rivals import PEOPLE8, PROJECT, data_folder, fail, locate, overlaps, read_sequence, table
+from rivals import PEOPLE8, PROJECT, data_folder, executable, fail, load_numpy, locate, overlaps, read_sequence, table
 
 BINS = 10
 # (sequence, first and last frame in which the target is hidden or half hidden, frame from which it must be tracked)
@@ -166,11 +165,9 @@ def main():
     parser.add_argument("--data", help="the folder that holds otb/ and people/ [default: INFOPART_DATA]")
     parser.add_argument("--plot", metavar="FILE.svg", help="write a reliability plot")
     options = parser.parse_args()
-    if not os.access(options.infopart, os.X_OK):
-        fail(f"no program at {options.infopart}: run `cargo build --release`, or give its path with --infopart")
-    rivals.np = np  # rivals.py loads it only with its own main
+    program = executable(options.infopart)
+    load_numpy()
     data = data_folder(options.data)
-    program = Path(options.infopart).resolve()
     sequences = [(name, "part") for name in PEOPLE8] + [(name, "whole") for name in OTHER7]
     jobs = [(program, data, *sequence, seed) for sequence in sequences for seed in range(1, options.seeds + 1)]
     with ThreadPoolExecutor(os.cpu_count()) as pool:

@@ -20,10 +20,9 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
-import rivals
-from rivals import PEOPLE8, PROJECT, data_folder, fail, locate, overlaps, read_sequence, score, table
+from rivals import PEOPLE8, PROJECT, data_folder, executable, fail, load_numpy, locate, overlaps, read_sequence, score, table
 
-rivals.np = np  # It imports numpy only when it runs itself.
+load_numpy()
 
 BOAT = "boat1"
 # Mean overlap that the benchmark published for its own colour particle filter (Perez et al. 2002).
@@ -237,9 +236,7 @@ def arguments():
     add("--infopart", default=PROJECT / "target/release/infopart", help="the program [default: target/release/infopart]")
     add("--data", help="the folder that holds otb/, people/ and ships/ [default: INFOPART_DATA]")
     options = parser.parse_args()
-    options.infopart = Path(options.infopart).resolve()
-    if not os.access(options.infopart, os.X_OK):
-        fail(f"no program at {options.infopart}: run `cargo build --release`, or give its path with --infopart")
+    options.infopart = executable(options.infopart)
     if options.seeds < 1 or min(options.steps) < 1:
         fail("--seeds and --steps must be at least 1")
     options.sequences = options.sequences or ([BOAT] if options.table == "errors" else [*PEOPLE8, BOAT])

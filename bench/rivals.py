@@ -42,6 +42,23 @@ def fail(message):
     sys.exit(2)
 
 
+def executable(given):
+    """The program, if it can be run."""
+    program = Path(given).resolve()
+    if not os.access(program, os.X_OK):
+        fail(f"no program at {program}: run `cargo build --release`, or give its path with --infopart")
+    return program
+
+
+def load_numpy():
+    """Only where it is needed: accuracy.py, which stands on this file too, does without."""
+    global np
+    try:
+        import numpy as np
+    except ImportError as error:
+        fail(f"{error}: pip install -r {PROJECT / 'bench/requirements.txt'}")
+
+
 # Input
 
 
@@ -244,16 +261,14 @@ def arguments():
 
 
 def main():
-    global cv2, np
+    global cv2
     options = arguments()
     try:
         import cv2
-        import numpy as np
     except ImportError as error:
         fail(f"{error}: pip install -r {PROJECT / 'bench/requirements.txt'}")
-    options.infopart = Path(options.infopart).resolve()
-    if not os.access(options.infopart, os.X_OK):
-        fail(f"no program at {options.infopart}: run `cargo build --release`, or give its path with --infopart")
+    load_numpy()
+    options.infopart = executable(options.infopart)
     data = data_folder(options.data)
     sequences = [read_sequence(name, *locate(data, name)) for name in options.sequences]
     names = [OURS, *options.rivals]

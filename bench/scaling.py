@@ -11,7 +11,6 @@ of each frame), and so a quiet machine. Needs `cargo build --release` and numpy.
 import argparse
 import csv
 import json
-import os
 import resource
 import statistics
 import subprocess
@@ -19,7 +18,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from rivals import PROJECT, data_folder, fail, locate, table
+from rivals import PROJECT, data_folder, executable, fail, locate, table
 
 WIDTH, HEIGHT, CROP = 1280, 720, (440, 210, 400, 300)
 TARGET = (600, 300, 40, 96)
@@ -102,9 +101,7 @@ def arguments():
     add("--infopart", default=PROJECT / "target/release/infopart", help="the program [default: target/release/infopart]")
     add("--data", help="the folder that holds otb/ and people/ [default: INFOPART_DATA]")
     options = parser.parse_args()
-    options.infopart = Path(options.infopart).resolve()
-    if not os.access(options.infopart, os.X_OK):
-        fail(f"no program at {options.infopart}: run `cargo build --release`, or give its path with --infopart")
+    options.infopart = executable(options.infopart)
     return options
 
 

@@ -16,10 +16,9 @@ import resource
 import statistics
 import subprocess
 import time
-from pathlib import Path
 
 from accuracy import LISTS
-from rivals import PROJECT, data_folder, fail, locate, table
+from rivals import PROJECT, data_folder, executable, fail, locate, table
 
 # Bytes of a cell: three colours and eight orientations of four bytes in the integral images, three colours of one byte before.
 BYTES_PER_CELL = 4 * (3 + 8) + 3
@@ -98,9 +97,7 @@ def main():
     add("--infopart", default=PROJECT / "target/release/infopart", help="the program [default: target/release/infopart]")
     add("--data", help="the folder that holds otb/ and people/ [default: INFOPART_DATA]")
     options = parser.parse_args()
-    program = Path(options.infopart).resolve()
-    if not os.access(program, os.X_OK):
-        fail(f"no program at {program}: run `cargo build --release`, or give its path with --infopart")
+    program = executable(options.infopart)
     data = data_folder(options.data)
     names = [name for given in options.sequences for name in LISTS.get(given, [given])]
     places = [locate(data, name) for name in names]

@@ -17,7 +17,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from accuracy import LISTS
-from rivals import OURS, PROJECT, data_folder, fail, locate, table
+from rivals import OURS, PROJECT, data_folder, executable, fail, locate, table
 
 
 def track(program, place, flags):
@@ -42,9 +42,7 @@ def arguments():
     add("--data", help="the folder that holds otb/ and people/ [default: INFOPART_DATA]")
     add("--out", metavar="FILE", help="write the table to FILE too")
     options = parser.parse_args()
-    options.infopart = Path(options.infopart).resolve()
-    if not os.access(options.infopart, os.X_OK):
-        fail(f"no program at {options.infopart}: run `cargo build --release`, or give its path with --infopart")
+    options.infopart = executable(options.infopart)
     if min(options.strides) < 1 or options.seeds < 1 or options.threads < 1:
         fail("--strides, --seeds and --threads must be at least 1")
     return options
