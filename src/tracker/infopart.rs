@@ -125,8 +125,7 @@ impl InfoPart {
             locator.learn(&self.integrals, part);
             self.stopwatch.lap("correlation learning");
         }
-        let mut target = Target::new(parameters, &frame, &self.integrals, box_in_frame, part);
-        target.locator = locator;
+        let mut target = Target::new(parameters, &frame, &self.integrals, box_in_frame, part, locator);
         target.sample(parameters, &self.integrals, (parameters.first_targets, parameters.first_backgrounds));
         self.stopwatch.lap("samples");
         target.train();
@@ -184,6 +183,7 @@ impl Target {
         integrals: &RegionIntegrals,
         box_in_frame: Rect,
         part: Rect,
+        locator: Option<Locator>,
     ) -> Self {
         let template = integrals.to_region(part);
         let channels = if frame.format() == PixelFormat::Gray { 1 } else { CHANNELS };
@@ -217,7 +217,7 @@ impl Target {
             estimate,
             sample: Vec::with_capacity(parameters.feature_pool),
             set_estimates: Vec::with_capacity(parameters.particle_sets),
-            locator: None,
+            locator,
         }
     }
 

@@ -4,10 +4,11 @@
 use infopart::{
     geometry::Region,
     tracker::{
-        CheckedParameters, InfoPart, ParameterError, Parameters, Tracker,
-        colour::{CheckedColourParameters, ColourParameters, ColourTracker},
+        InfoPart, ParameterError, Parameters, Tracker,
+        colour::{ColourParameters, ColourTracker},
     },
 };
+use serde::Serialize;
 use serde_json::Value;
 use thiserror::Error;
 
@@ -53,25 +54,83 @@ pub enum FactoryError {
     },
 }
 
-/// InfoPart with some parameters, under a name.
-#[derive(Debug, Clone)]
-pub struct InfoPartFactory {
-    name: String,
-    parameters: CheckedParameters,
+/// Parameters that a tracker of this program starts from.
+pub trait TrackerParameters: Clone + Send + Sync + Serialize + 'static {
+    /// Takes the seed of all randomness.
+    fn set_seed(&mut self, seed: u64);
+
+    /// Checks the parameters and makes a tracker of them.
+    ///
+    /// # Errors
+    /// [`ParameterError`] for the first value that is out of its range.
+    fn start(self) -> Result<Box<dyn Tracker>, ParameterError>;
 }
 
-impl InfoPartFactory {
-    /// InfoPart with these parameters, of which the seed does not matter.
+impl TrackerParameters for Parameters {
+    fn set_seed(&mut self, seed: u64) {
+        self.seed = seed;
+    }
+
+    fn start(self) -> Result<Box<dyn Tracker>, ParameterError> {
+        Ok(Box::new(InfoPart::new(self.check()?)))
+    }
+}
+
+impl TrackerParameters for ColourParameters {
+    fn set_seed(&mut self, seed: u64) {
+        self.seed = seed;
+    }
+
+    fn start(self) -> Result<Box<dyn Tracker>, ParameterError> {
+        Ok(Box::new(ColourTracker::new(self.check()?)))
+    }
+}
+
+/// A tracker of this program with some parameters, under a name.
+#[derive(Debug, Clone)]
+pub struct OwnFactory<P> {
+    name: String,
+    parameters: P,
+}
+
+/// InfoPart with some parameters.
+pub type InfoPartFactory = OwnFactory<Parameters>;
+
+/// The colour-histogram particle filter with some parameters.
+pub type ColourFactory = OwnFactory<ColourParameters>;
+
+impl<P: TrackerParameters> OwnFactory<P> {
+    /// The tracker with these parameters, of which the seed does not matter.
     ///
     /// # Errors
     /// [`FactoryError::Parameters`].
-    pub fn new(name: impl Into<String>, mut parameters: Parameters) -> Result<Self, FactoryError> {
-        let name = name.into();
-        parameters.seed = 1;
-        match parameters.check() {
-            Ok(parameters) => Ok(Self { name, parameters }),
-            Err(source) => Err(FactoryError::Parameters { name, source }),
+    pub fn new(name: impl Into<String>, parameters: P) -> Result<Self, FactoryError> {
+        let factory = Self { name: name.into(), parameters };
+        factory.create(1).map(|_| factory)
+    }
+}
+
+impl<P: TrackerParameters> TrackerFactory for OwnFactory<P> {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn parameters(&self) -> Value {
+        let mut parameters = serde_json::to_value(&self.parameters).unwrap_or_default();
+        if let Some(object) = parameters.as_object_mut() {
+            object.remove("seed");
         }
+        parameters
+    }
+
+    fn program(&self) -> String {
+        format!("infopart {}", infopart::VERSION)
+    }
+
+    fn create(&self, seed: u64) -> Result<Box<dyn Tracker>, FactoryError> {
+        let mut parameters = self.parameters.clone();
+        parameters.set_seed(seed);
+        parameters.start().map_err(|source| FactoryError::Parameters { name: self.name.clone(), source })
     }
 }
 
@@ -96,81 +155,6 @@ pub fn named_factory(name: &str) -> Result<Box<dyn TrackerFactory>, FactoryError
         _ => return Err(FactoryError::Unknown { name: name.to_owned() }),
     };
     Ok(Box::new(InfoPartFactory::new(name, parameters)?))
-}
-
-/// The colour-histogram particle filter with some parameters, under a name.
-#[derive(Debug, Clone)]
-pub struct ColourFactory {
-    name: String,
-    parameters: CheckedColourParameters,
-}
-
-impl ColourFactory {
-    /// The colour tracker with these parameters, of which the seed does not matter.
-    ///
-    /// # Errors
-    /// [`FactoryError::Parameters`].
-    pub fn new(name: impl Into<String>, mut parameters: ColourParameters) -> Result<Self, FactoryError> {
-        let name = name.into();
-        parameters.seed = 1;
-        match parameters.check() {
-            Ok(parameters) => Ok(Self { name, parameters }),
-            Err(source) => Err(FactoryError::Parameters { name, source }),
-        }
-    }
-}
-
-impl TrackerFactory for ColourFactory {
-    fn name(&self) -> &str {
-        &self.name
-    }
-
-    fn parameters(&self) -> Value {
-        without_seed(serde_json::to_value(&*self.parameters).unwrap_or_default())
-    }
-
-    fn program(&self) -> String {
-        format!("infopart {}", infopart::VERSION)
-    }
-
-    fn create(&self, seed: u64) -> Result<Box<dyn Tracker>, FactoryError> {
-        let mut parameters = (*self.parameters).clone();
-        parameters.seed = seed;
-        let parameters = parameters
-            .check()
-            .map_err(|source| FactoryError::Parameters { name: self.name.clone(), source })?;
-        Ok(Box::new(ColourTracker::new(parameters)))
-    }
-}
-
-fn without_seed(mut parameters: Value) -> Value {
-    if let Some(object) = parameters.as_object_mut() {
-        object.remove("seed");
-    }
-    parameters
-}
-
-impl TrackerFactory for InfoPartFactory {
-    fn name(&self) -> &str {
-        &self.name
-    }
-
-    fn parameters(&self) -> Value {
-        without_seed(serde_json::to_value(&*self.parameters).unwrap_or_default())
-    }
-
-    fn program(&self) -> String {
-        format!("infopart {}", infopart::VERSION)
-    }
-
-    fn create(&self, seed: u64) -> Result<Box<dyn Tracker>, FactoryError> {
-        let mut parameters = (*self.parameters).clone();
-        parameters.seed = seed;
-        let parameters = parameters
-            .check()
-            .map_err(|source| FactoryError::Parameters { name: self.name.clone(), source })?;
-        Ok(Box::new(InfoPart::new(parameters)))
-    }
 }
 
 #[cfg(test)]

@@ -10,7 +10,10 @@ mod plan;
 mod pool;
 
 pub use execute::{JobFailure, Recording, execute};
-pub use factory::{ColourFactory, FactoryError, InfoPartFactory, NAMES, TrackerFactory, named_factory};
+pub use factory::{
+    ColourFactory, FactoryError, InfoPartFactory, NAMES, OwnFactory, TrackerFactory, TrackerParameters,
+    named_factory,
+};
 pub use job::{Job, stem};
 
 pub use plan::{PlanOptions, PlanProblem, Shard, plan};
