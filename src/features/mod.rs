@@ -1,6 +1,8 @@
 //! Features of a box in a frame, evaluated on integral images of the search region. Knows no tracker.
 
+mod cells;
 pub mod colour_histogram;
+mod gradient;
 pub mod haar;
 pub mod hog;
 pub mod region;
