@@ -9,7 +9,8 @@
 //!    h A e, with h the kernel's bandwidth, A A' the weighted covariance before resampling, e drawn from the kernel,
 //! 6. estimate the weighted mean and its covariance, before or after step 5.
 
-use rand::Rng;
+use rand::{Rng, RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
 use super::{
@@ -22,8 +23,8 @@ use super::{
 
 /// Particles that one thread weighs at a time.
 const CHUNK: usize = 16;
-/// Ratios of densities that a thread computes at least.
-const RATIOS_PER_TASK: usize = 128;
+/// Particles that are drawn from one stream of random numbers, and so by one thread.
+const STREAM: usize = 256;
 
 /// How a particle filter normalises, resamples and estimates.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -66,6 +67,9 @@ pub struct ParticleEstimate<const N: usize> {
     /// Whether the particles were resampled.
     pub resampled: bool,
 }
+
+/// Particles that share a stream of random numbers: where they go to, where they come from, and their log-weights.
+type Streamful<'a, const N: usize> = ((&'a mut [State<N>], &'a [State<N>]), &'a mut [f64]);
 
 /// Weighted particles that stand for p(x_k | y_1:k).
 #[derive(Debug, Clone)]
@@ -135,32 +139,33 @@ impl<const N: usize, S: Resample> ParticleFilter<N, S> {
         }
     }
 
-    /// Step 1 with a proposal of its own; the weights take p / q. Particles are drawn one after another, as in
-    /// [`predict`](Self::predict), and then compared in parallel with where they came from.
+    /// Step 1 with a proposal of its own; the weights take p / q. Particles are moved in parallel, each [`STREAM`] of them
+    /// with random numbers of their own.
     pub fn propose<R: Rng + ?Sized>(
         &mut self,
         proposal: &(impl Proposal<N> + Sync),
         transition: &(impl Transition<N> + Sync),
         rng: &mut R,
     ) {
-        self.spare.clear();
-        self.spare.extend(self.states.iter().map(|state| proposal.sample(state, rng)));
+        let seed = rng.random();
         std::mem::swap(&mut self.states, &mut self.spare);
-        let add_ratio = |log_weight: &mut f64, next: &State<N>, state: &State<N>| {
-            *log_weight += transition.log_density(next, state) - proposal.log_density(next, state);
-        };
-        if self.on_one_thread {
-            for ((log_weight, next), state) in self.log_weights.iter_mut().zip(&self.states).zip(&self.spare)
-            {
-                add_ratio(log_weight, next, state);
+        self.states.resize(self.spare.len(), State::zeros());
+        let propose = |(number, ((next, states), log_weights)): (usize, Streamful<'_, N>)| {
+            let mut rng = ChaCha8Rng::seed_from_u64(seed);
+            rng.set_stream(number as u64);
+            for ((next, state), log_weight) in next.iter_mut().zip(states).zip(log_weights) {
+                *next = proposal.sample(state, &mut rng);
+                *log_weight += transition.log_density(next, state) - proposal.log_density(next, state);
             }
+        };
+        let (next, states, log_weights) = (&mut self.states, &self.spare, &mut self.log_weights);
+        if self.on_one_thread {
+            let streams =
+                next.chunks_mut(STREAM).zip(states.chunks(STREAM)).zip(log_weights.chunks_mut(STREAM));
+            streams.enumerate().for_each(propose);
         } else {
-            self.log_weights
-                .par_iter_mut()
-                .zip(&self.states)
-                .zip(&self.spare)
-                .with_min_len(RATIOS_PER_TASK)
-                .for_each(|((log_weight, next), state)| add_ratio(log_weight, next, state));
+            let streams = next.par_chunks_mut(STREAM).zip(states.par_chunks(STREAM));
+            streams.zip(log_weights.par_chunks_mut(STREAM)).enumerate().for_each(propose);
         }
     }
 

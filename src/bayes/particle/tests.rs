@@ -88,6 +88,32 @@ fn a_shifted_proposal_is_made_good_by_its_ratio() {
 }
 
 #[test]
+fn a_proposal_draws_the_same_bits_on_one_thread_and_on_several() {
+    let transition = RandomWalk::<1>::new(State::<1>::new(0.5));
+    let shifted = RandomWalk::<1> { shift: State::<1>::new(0.6), sigma: State::<1>::new(0.9) };
+    let propose = |threads: usize, alone: bool| {
+        let mut rng = ChaCha8Rng::seed_from_u64(3);
+        let mut filter =
+            ParticleFilter::new(normal_particles(1000, &mut rng), ParticleFilterOptions::default());
+        if alone {
+            filter = filter.on_one_thread();
+        }
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            filter.propose(&shifted, &transition, &mut rng);
+            let found = filter.correct(&Measured { y: 0.3, sigma: 0.4 }, &mut rng);
+            (filter.states().to_vec(), found)
+        })
+    };
+    let (states, found) = propose(1, true);
+    assert_eq!((states.clone(), found), propose(1, false));
+    assert_eq!((states.clone(), found), propose(3, false));
+    // No two of the streams are the same.
+    assert_ne!(states[0], states[256]);
+    assert_ne!(states[256], states[512]);
+}
+
+#[test]
 fn estimating_after_resampling_has_the_same_mean_but_is_another_number() {
     let transition = RandomWalk::<1>::new(State::<1>::new(1.0));
     let run = |estimate_after_resampling| {
