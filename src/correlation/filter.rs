@@ -14,7 +14,6 @@
 //! The response to cells z is the inverse transform of sum_c conj(g_c) z_c, divided by what the filter answered at the
 //! centre of the window it learnt from: 1 means as sure as then.
 
-use rayon::prelude::*;
 use realfft::num_complex::Complex32;
 
 use super::{
@@ -27,8 +26,6 @@ use super::{
 const RHO: f32 = 1.0;
 /// rho of a round / rho of the round before.
 const RHO_GROWTH: f32 = 10.0;
-/// Channels that a thread takes at least.
-const CHANNELS_PER_TASK: usize = 4;
 
 /// How a filter is learnt.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -62,6 +59,7 @@ pub struct CorrelationFilter {
     /// For each frequency sum_c |x_c|^2.
     energy: Vec<f32>,
     product: Vec<Complex32>,
+    image: Vec<f32>,
     scratch: Scratch,
 }
 
@@ -74,8 +72,6 @@ struct Channel {
     h: Vec<Complex32>,
     /// The filter in use: g of the last learning.
     filter: Vec<Complex32>,
-    image: Vec<f32>,
-    scratch: Scratch,
 }
 
 impl CorrelationFilter {
@@ -91,8 +87,6 @@ impl CorrelationFilter {
             g: zeros.clone(),
             h: zeros.clone(),
             filter: zeros.clone(),
-            image: vec![0.0; side * side],
-            scratch: fourier.scratch(),
         };
         let sigma = options.label_sigma * (width * height).sqrt() * side as f64;
         let mut label = zeros.clone();
@@ -107,6 +101,7 @@ impl CorrelationFilter {
             own_answer: 1.0,
             energy: vec![0.0; zeros.len()],
             product: zeros,
+            image: vec![0.0; side * side],
             scratch,
             fourier,
         }
@@ -136,11 +131,9 @@ impl CorrelationFilter {
 
     fn transform(&mut self, planes: &[f32]) {
         let (fourier, area) = (&self.fourier, self.options.side * self.options.side);
-        self.channels
-            .par_iter_mut()
-            .zip(planes.par_chunks(area))
-            .with_min_len(CHANNELS_PER_TASK)
-            .for_each(|(channel, plane)| fourier.forward(plane, &mut channel.x, &mut channel.scratch));
+        for (channel, plane) in self.channels.iter_mut().zip(planes.chunks_exact(area)) {
+            fourier.forward(plane, &mut channel.x, &mut self.scratch);
+        }
     }
 
     fn correlate(&mut self, window: Window) {
@@ -176,20 +169,16 @@ impl CorrelationFilter {
 
     /// Step 1 up to the sum over channels. With q = x conj(y) / T + mu f_before + rho (g - h), T the number of cells,
     ///   f = (q - x (x^H q) / (T (mu + rho) + x^H x)) / (mu + rho):
-    /// f holds q, and `product` the fraction. Each channel is a thread's, the sum runs over them in order.
+    /// f holds q, and `product` the fraction.
     fn fit_labels(&mut self, mu: f32, rho: f32) {
         let area = (self.options.side * self.options.side) as f32;
-        let label = &self.label;
-        self.channels.par_iter_mut().with_min_len(CHANNELS_PER_TASK).for_each(|channel| {
-            let Channel { x, f, g, h, filter, .. } = channel;
-            let known = x.iter().zip(label).zip(filter.iter());
+        self.product.fill(Complex32::default());
+        for Channel { x, f, g, h, filter } in &mut self.channels {
+            let known = x.iter().zip(&self.label).zip(filter.iter());
             for ((f, ((x, y), before)), (g, h)) in f.iter_mut().zip(known).zip(g.iter().zip(h.iter())) {
                 *f = x * y.conj() / area + before * mu + (g - h) * rho;
             }
-        });
-        self.product.fill(Complex32::default());
-        for Channel { x, f, .. } in &self.channels {
-            for ((sum, x), f) in self.product.iter_mut().zip(x).zip(f) {
+            for ((sum, x), f) in self.product.iter_mut().zip(x.iter()).zip(f.iter()) {
                 *sum += x.conj() * f;
             }
         }
@@ -200,22 +189,21 @@ impl CorrelationFilter {
 
     /// The end of step 1, and steps 2 and 3.
     fn confine(&mut self, mu: f32, rho: f32) {
-        let (support, fourier, product) = (&self.support, &self.fourier, &self.product);
-        self.channels.par_iter_mut().with_min_len(CHANNELS_PER_TASK).for_each(|channel| {
-            let Channel { x, f, g, h, image, scratch, .. } = channel;
-            for ((f, x), product) in f.iter_mut().zip(x.iter()).zip(product) {
+        let Self { channels, support, fourier, product, image, scratch, .. } = self;
+        for Channel { x, f, g, h, .. } in channels {
+            for ((f, x), product) in f.iter_mut().zip(x.iter()).zip(product.iter()) {
                 *f = (*f - x * product) / (mu + rho);
             }
             for ((g, f), h) in g.iter_mut().zip(f.iter()).zip(h.iter()) {
                 *g = f + h;
             }
             fourier.inverse(g, image, scratch);
-            image.iter_mut().zip(support).for_each(|(value, support)| *value *= support);
+            image.iter_mut().zip(support.iter()).for_each(|(value, support)| *value *= support);
             fourier.forward(image, g, scratch);
             for ((h, f), g) in h.iter_mut().zip(f.iter()).zip(g.iter()) {
                 *h += f - g;
             }
-        });
+        }
     }
 }
 

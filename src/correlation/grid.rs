@@ -1,16 +1,19 @@
-//! Cells of a window, read from integral images: oriented gradients and mean colours.
+//! Cells of a window, read from integral images.
 //!
 //! Steps:
-//! 1. the lines of a grid of `side` x `side` cells over the window, between the region's cells by interpolation,
-//! 2. each cell's gradient magnitude in 8 unsigned orientations, as a difference of four corners,
-//! 3. normalised by the energy of its four blocks of 2 x 2 cells and clipped at 0.2: 8 numbers and 4 energies
+//! 1. the mean gradient magnitude of each of `side` x `side` cells in 8 unsigned orientations, and its mean colours
+//!    ([`lattice`](super::lattice)),
+//! 2. gradients normalised by the energy of the cell's four blocks of 2 x 2 cells and clipped at 0.2: 8 numbers and 4 energies
 //!    (Felzenszwalb, Girshick, McAllester, Ramanan 2010),
-//! 4. its mean luminance and two colour differences, without the window's mean,
-//! 5. gradients and colours each scaled to a mean square of 1, and all tapered towards the window's border.
+//! 3. luminance and two colour differences, without the window's mean,
+//! 4. gradients and colours each scaled to a mean square of 1, and all tapered towards the window's border.
 
-use crate::features::{hog::BINS, region::RegionIntegrals};
+use crate::features::{blocks::BlockIntegrals, hog::BINS};
 
-use super::window::Window;
+use super::{
+    lattice::{COLOURS, Lattice},
+    window::Window,
+};
 
 const BLOCKS: usize = 4;
 /// Numbers a cell has for its gradients.
@@ -24,20 +27,10 @@ const CLIP: f32 = 0.2;
 pub struct Grid {
     side: usize,
     taper: Vec<f32>,
-    columns: Vec<Line>,
-    rows: Vec<Line>,
-    corners: [Vec<[f64; BINS + 3]>; 2],
+    lattice: Lattice,
     gradients: Vec<[f32; BINS]>,
     energies: Vec<f32>,
     planes: Vec<f32>,
-}
-
-/// A line of the grid between two of the region's.
-#[derive(Debug, Clone, Copy, Default)]
-struct Line {
-    before: usize,
-    after: usize,
-    share: f64,
 }
 
 impl Grid {
@@ -50,13 +43,16 @@ impl Grid {
         Self {
             side,
             taper: (0..side * side).map(|i| hann(i / side) * hann(i % side)).collect(),
-            columns: vec![Line::default(); side + 1],
-            rows: vec![Line::default(); side + 1],
-            corners: [vec![[0.0; BINS + 3]; side + 1], vec![[0.0; BINS + 3]; side + 1]],
+            lattice: Lattice::new(side, side),
             gradients: vec![[0.0; BINS]; side * side],
             energies: vec![0.0; side * side],
             planes: vec![0.0; CHANNELS * side * side],
         }
+    }
+
+    /// Cells along the window's side.
+    pub fn side(&self) -> usize {
+        self.side
     }
 
     /// The planes of all channels, one after another, each with its rows one after another.
@@ -64,11 +60,10 @@ impl Grid {
         &self.planes
     }
 
-    /// Describes a window of the frame (steps 1 to 5).
-    pub fn describe(&mut self, integrals: &RegionIntegrals, window: Window, colour: f32) {
+    /// Describes a window of the frame (steps 1 to 4).
+    pub fn describe(&mut self, integrals: &BlockIntegrals, window: Window, colour: f32) {
         let area = self.side * self.side;
-        self.set_lines(integrals, window);
-        self.collect(integrals);
+        self.collect(integrals, window);
         self.normalise();
         for plane in self.planes[GRADIENTS * area..].chunks_exact_mut(area) {
             let mean = plane.iter().sum::<f32>() / area as f32;
@@ -81,76 +76,19 @@ impl Grid {
         }
     }
 
-    /// Step 1.
-    fn set_lines(&mut self, integrals: &RegionIntegrals, window: Window) {
-        let region = integrals.region();
-        let set = |lines: &mut [Line], centre: f64, from: i64, cells: usize| {
-            let last = lines.len() - 1;
-            for (i, line) in lines.iter_mut().enumerate() {
-                let at = centre + window.side * (i as f64 / last as f64 - 0.5);
-                let at = ((at - from as f64) / region.step as f64).clamp(0.0, cells as f64);
-                let before = (at as usize).min(cells);
-                *line = Line { before, after: (before + 1).min(cells), share: at - before as f64 };
+    /// Steps 1 and 3, but for the mean.
+    fn collect(&mut self, integrals: &BlockIntegrals, window: Window) {
+        let area = self.side * self.side;
+        let Self { lattice, gradients, planes, .. } = self;
+        lattice.read(integrals, window.to_rect(), |cell, means| {
+            gradients[cell].copy_from_slice(&means[..BINS]);
+            for (plane, value) in colour_differences(means).into_iter().enumerate() {
+                planes[(GRADIENTS + plane) * area + cell] = value;
             }
-        };
-        set(&mut self.columns, window.x, region.x, region.width);
-        set(&mut self.rows, window.y, region.y, region.height);
+        });
     }
 
-    /// Steps 2 and 4.
-    fn collect(&mut self, integrals: &RegionIntegrals) {
-        let (side, area) = (self.side, self.side * self.side);
-        self.load_corners(integrals, 0, 0);
-        for row in 0..side {
-            let (above, below) = (row % 2, (row + 1) % 2);
-            self.load_corners(integrals, row + 1, below);
-            let (above, below) = (&self.corners[above], &self.corners[below]);
-            let height = self.rows[row + 1].at() - self.rows[row].at();
-            for column in 0..side {
-                let width = self.columns[column + 1].at() - self.columns[column].at();
-                let per_area = if width * height > 1e-6 { 1.0 / (width * height) } else { 0.0 };
-                let cell = row * side + column;
-                let (a, b, c, d) = (&above[column], &above[column + 1], &below[column], &below[column + 1]);
-                let mean = |k: usize| ((d[k] - c[k] - b[k] + a[k]) * per_area) as f32;
-                for (bin, out) in self.gradients[cell].iter_mut().enumerate() {
-                    *out = mean(bin);
-                }
-                let [r, g, b] = [mean(BINS), mean(BINS + 1), mean(BINS + 2)];
-                self.planes[GRADIENTS * area + cell] = 0.25 * (r + 2.0 * g + b);
-                self.planes[(GRADIENTS + 1) * area + cell] = r - g;
-                self.planes[(GRADIENTS + 2) * area + cell] = 0.5 * (r + g) - b;
-            }
-        }
-    }
-
-    fn load_corners(&mut self, integrals: &RegionIntegrals, row: usize, slot: usize) {
-        let line = self.rows[row];
-        let stride = integrals.stride();
-        let (above, below) = (line.before * stride, line.after * stride);
-        let orientation = integrals.orientation();
-        let colour: [&[u32]; 3] = std::array::from_fn(|channel| integrals.colour(channel));
-        for (column, out) in self.columns.iter().zip(&mut self.corners[slot]) {
-            let at =
-                [above + column.before, above + column.after, below + column.before, below + column.after];
-            let weights = [
-                (1.0 - line.share) * (1.0 - column.share),
-                (1.0 - line.share) * column.share,
-                line.share * (1.0 - column.share),
-                line.share * column.share,
-            ];
-            *out = [0.0; BINS + 3];
-            for (at, weight) in at.into_iter().zip(weights) {
-                for (out, value) in out.iter_mut().zip(&orientation[at]) {
-                    *out += weight * f64::from(*value);
-                }
-                for (out, plane) in out[BINS..].iter_mut().zip(colour) {
-                    *out += weight * f64::from(plane[at]);
-                }
-            }
-        }
-    }
-
-    /// Step 3.
+    /// Step 2.
     fn normalise(&mut self) {
         let (side, area) = (self.side, self.side * self.side);
         for (energy, gradients) in self.energies.iter_mut().zip(&self.gradients) {
@@ -187,10 +125,10 @@ impl Grid {
     }
 }
 
-impl Line {
-    fn at(&self) -> f64 {
-        self.before as f64 + self.share
-    }
+/// Luminance, red against green, and yellow against blue.
+pub(super) fn colour_differences(means: &[f32]) -> [f32; 3] {
+    let [r, g, b] = [means[COLOURS.start], means[COLOURS.start + 1], means[COLOURS.start + 2]];
+    [0.25 * (r + 2.0 * g + b), r - g, 0.5 * (r + g) - b]
 }
 
 fn scale_to(values: &mut [f32], root_mean_square: f32) {
@@ -211,10 +149,10 @@ mod tests {
 
     const SIDE: usize = 8;
 
-    fn integrals(frame: &Frame) -> RegionIntegrals {
-        let mut integrals = RegionIntegrals::default();
+    fn integrals(frame: &Frame) -> BlockIntegrals {
+        let mut integrals = BlockIntegrals::default();
         let (width, height) = (frame.view().width(), frame.view().height());
-        integrals.compute(&frame.view(), SearchRegion { x: 0, y: 0, width, height, step: 1 });
+        integrals.compute(&frame.view(), SearchRegion { x: 0, y: 0, width, height, step: 1 }, 1);
         integrals
     }
 
@@ -223,8 +161,7 @@ mod tests {
         let frame = reference::textured_frame(40, 40, PixelFormat::Rgb);
         let mut grid = Grid::new(SIDE);
         let integrals = integrals(&frame);
-        grid.set_lines(&integrals, Window { x: 20.0, y: 18.0, side: 32.0 });
-        grid.collect(&integrals);
+        grid.collect(&integrals, Window { x: 20.0, y: 18.0, side: 32.0 });
         let naive = reference::gradient_bins(&frame.view(), integrals.region());
         for (cell, found) in grid.gradients.iter().enumerate() {
             let (left, top) = (4 + cell % SIDE * 4, 2 + cell / SIDE * 4);
@@ -250,11 +187,9 @@ mod tests {
         let integrals = integrals(&Frame::new(pixels, 40, 40, PixelFormat::Gray).unwrap());
         let mut grid = Grid::new(SIDE);
         let total = |grid: &Grid| grid.gradients[..SIDE].iter().flatten().sum::<f32>();
-        grid.set_lines(&integrals, Window { x: 20.0, y: 20.0, side: 32.0 });
-        grid.collect(&integrals);
+        grid.collect(&integrals, Window { x: 20.0, y: 20.0, side: 32.0 });
         let whole = total(&grid);
-        grid.set_lines(&integrals, Window { x: 21.3, y: 20.0, side: 32.0 });
-        grid.collect(&integrals);
+        grid.collect(&integrals, Window { x: 21.3, y: 20.0, side: 32.0 });
         assert!((total(&grid) - whole).abs() < 1e-2 * whole);
     }
 

@@ -6,6 +6,8 @@
 
 pub mod filter;
 pub mod grid;
+mod lattice;
 pub mod response;
+pub mod scale;
 pub mod spectrum;
 pub mod window;

@@ -118,7 +118,8 @@ impl Response {
     }
 }
 
-fn cubic_weights(t: f32) -> [f32; 4] {
+/// Weights of a Catmull-Rom cubic between the second and the third of four values, at `t` in [0, 1] of the way.
+pub(super) fn cubic_weights(t: f32) -> [f32; 4] {
     let (t2, t3) = (t * t, t * t * t);
     [
         0.5 * (-t3 + 2.0 * t2 - t),

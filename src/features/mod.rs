@@ -1,5 +1,6 @@
 //! Features of a box in a frame, evaluated on integral images of the search region. Knows no tracker.
 
+pub mod blocks;
 mod cells;
 pub mod colour_histogram;
 mod gradient;

@@ -4,7 +4,8 @@
 //! 1. the hypothesis in the search region's cells (features are evaluated scaled instead of resizing a crop),
 //! 2. HOG2 and the Haar-like features that the classifier reads,
 //! 3. conf = F(Haar2) (Algorithm 3),
-//! 4. likelihood = exp(alpha * conf - gamma * ||HOG1 - HOG2||^2 + beta * the correlation filter's response).
+//! 4. likelihood = exp(alpha * conf - gamma * ||HOG1 - HOG2||^2 + beta * the correlation filter's response
+//!    + its weight * the scale filter's response).
 
 use crate::{
     bayes::Observation,
@@ -90,8 +91,8 @@ pub(super) struct FrameObservation<'a> {
     pub appearance: &'a Appearance,
     /// h / w of the part.
     pub aspect: f64,
-    /// The correlation filter that has looked at the frame, and the weight of its response.
-    pub locator: Option<(&'a Locator, f64)>,
+    /// The correlation filters that have looked at the frame.
+    pub locator: Option<&'a Locator>,
 }
 
 impl Observation<3> for FrameObservation<'_> {
@@ -99,8 +100,6 @@ impl Observation<3> for FrameObservation<'_> {
         let part = box_of(state, self.aspect);
         let fit = self.appearance.fit(self.integrals, &self.integrals.to_region(part));
         let of_fit = self.appearance.score_weight * fit.score - self.appearance.hog_weight * fit.hog_distance;
-        let of_response =
-            self.locator.map_or(0.0, |(locator, weight)| weight * f64::from(locator.response(part)));
-        f64::from(of_fit) + of_response
+        f64::from(of_fit) + self.locator.map_or(0.0, |locator| locator.log_likelihood(part))
     }
 }

@@ -5,15 +5,14 @@
 //! 2. sample the part and its surroundings (Algorithm 5), train the classifier F (Algorithm 4), and let the correlation
 //!    filter learn,
 //! 3. in each later frame:
-//!    a. compute integral images around the target and correlate, move the particles by the walk or to the filter's peak,
+//!    a. correlate, move the particles by the walk or to the filter's peak, compute integral images of what they cover,
 //!    weigh and resample them (Algorithm 1),
 //!    b. estimate the part from the sets and recover the whole box from it,
 //!    c. judge the estimate,
 //!    d. if it is due and the estimate is trusted, sample the new part and retrain F,
 //!    e. likewise let the filter learn.
 //!
-//! The correlation filter is the step that the paper names as its next; without it (weight 0), the integral images are
-//! of the region that the particles cover, and all else is as printed.
+//! The correlation filter is the step that the paper names as its next; without it (weight 0) all else is as printed.
 
 use std::sync::Arc;
 
@@ -117,19 +116,17 @@ impl InfoPart {
         let mut locator =
             (parameters.correlation_weight > 0.0).then(|| Locator::new(parameters, box_in_frame));
         let field = Sampler::new(parameters).field(&part);
-        let extent =
-            locator.as_ref().map_or(field, |locator| holding(&field, &locator.window(part).to_rect()));
-        self.integrals.compute(&frame, search_region(extent, &part, parameters.max_part_cells));
+        self.integrals.compute(&frame, search_region(field, &part, parameters.max_part_cells));
         self.stopwatch.lap("integral images");
         if let Some(locator) = &mut locator {
-            locator.learn(&self.integrals, part);
-            self.stopwatch.lap("correlation learning");
+            locator.see(&frame, part);
+            self.stopwatch.lap("integral images of blocks");
         }
         let mut target = Target::new(parameters, &frame, &self.integrals, box_in_frame, part, locator);
         target.sample(parameters, &self.integrals, (parameters.first_targets, parameters.first_backgrounds));
         self.stopwatch.lap("samples");
-        target.train();
-        self.stopwatch.lap("training");
+        target.learn(true, true);
+        self.stopwatch.lap("learning");
         self.target = Some(target);
     }
 
@@ -141,37 +138,33 @@ impl InfoPart {
         self.stopwatch.start();
         target.frame += 1;
         let part = target.estimate.part_in_frame;
-        let region = |extent| search_region(extent, &part, parameters.max_part_cells);
         if let Some(locator) = &mut target.locator {
-            let extent = holding(&locator.window(part).to_rect(), &around(&part));
-            self.integrals.compute(&frame, region(extent));
-            self.stopwatch.lap("integral images");
-            locator.look(&self.integrals, part);
+            locator.see(&frame, part);
+            self.stopwatch.lap("integral images of blocks");
+            locator.look(part);
             self.stopwatch.lap("correlation");
         }
         target.predict(parameters);
         self.stopwatch.lap("prediction");
-        if target.locator.is_none() {
-            self.integrals.compute(&frame, region(target.extent()));
-            self.stopwatch.lap("integral images");
-        }
+        self.integrals.compute(&frame, search_region(target.extent(), &part, parameters.max_part_cells));
+        self.stopwatch.lap("integral images");
         target.correct(parameters, &self.integrals);
         self.stopwatch.lap("likelihood");
         let fit = target.judge(parameters, &self.integrals);
         self.stopwatch.lap("estimate");
-        if target.update_is_due(parameters, &fit) {
+        let update_is_due = target.update_is_due(parameters, &fit);
+        if update_is_due {
+            if target.locator.is_some() {
+                let part = target.estimate.part_in_frame;
+                let field = Sampler::new(parameters).field(&part);
+                self.integrals.compute(&frame, search_region(field, &part, parameters.max_part_cells));
+            }
             target.age_template(parameters.hog_ageing as f32, &self.integrals);
             target.sample(parameters, &self.integrals, (parameters.targets, parameters.backgrounds));
             self.stopwatch.lap("samples");
-            target.train();
-            self.stopwatch.lap("training");
         }
-        if target.learning_is_due(parameters)
-            && let Some(locator) = &mut target.locator
-        {
-            locator.learn(&self.integrals, target.estimate.part_in_frame);
-            self.stopwatch.lap("correlation learning");
-        }
+        target.learn(update_is_due, target.learning_is_due(parameters));
+        self.stopwatch.lap("learning");
         Ok(target.estimate.clone())
     }
 }
@@ -278,9 +271,12 @@ impl Target {
     /// Step 3a, correction, and 3b: the sets' means weighted by their mean likelihoods.
     fn correct(&mut self, parameters: &CheckedParameters, integrals: &RegionIntegrals) {
         let seed = parameters.seed;
-        let locator = self.locator.as_ref().map(|locator| (locator, parameters.correlation_weight));
-        let observation =
-            FrameObservation { integrals, appearance: &self.appearance, aspect: self.aspect, locator };
+        let observation = FrameObservation {
+            integrals,
+            appearance: &self.appearance,
+            aspect: self.aspect,
+            locator: self.locator.as_ref(),
+        };
         self.set_estimates.clear();
         for (set, particles) in self.sets.iter_mut().enumerate() {
             // Past the prediction's draws: the frame's second half of the stream numbers.
@@ -356,9 +352,24 @@ impl Target {
         );
     }
 
-    fn train(&mut self) {
-        self.trainer.train(&self.memory, &mut self.classifier);
-        self.appearance.set_classifier(&self.classifier);
+    /// The rest of steps 3d and 3e: the classifier and the correlation filters, each if it is its turn, side by side.
+    fn learn(&mut self, train: bool, correlate: bool) {
+        let Self { trainer, memory, classifier, locator, estimate, .. } = self;
+        rayon::join(
+            || {
+                if train {
+                    trainer.train(memory, classifier);
+                }
+            },
+            || {
+                if let Some(locator) = locator.as_mut().filter(|_| correlate) {
+                    locator.learn(estimate.part_in_frame);
+                }
+            },
+        );
+        if train {
+            self.appearance.set_classifier(&self.classifier);
+        }
     }
 }
 
@@ -378,17 +389,6 @@ fn particle_set(parameters: &CheckedParameters, part: &Rect, set: usize) -> Part
         regularisation: None,
     };
     ParticleFilter::new(states, options)
-}
-
-/// The smallest box that holds both.
-fn holding(a: &Rect, b: &Rect) -> Rect {
-    let (x, y) = (a.x.min(b.x), a.y.min(b.y));
-    Rect::new(x, y, a.right().max(b.right()) - x, a.bottom().max(b.bottom()) - y)
-}
-
-/// A box of twice the width and height around a part: what the particles need at least, however long and thin it is.
-fn around(part: &Rect) -> Rect {
-    Rect::new(part.x - part.w / 2.0, part.y - part.h / 2.0, 2.0 * part.w, 2.0 * part.h)
 }
 
 /// The cells that hold `extent`, coarse enough that the part has at most `max_part_cells`.

@@ -162,6 +162,14 @@ parameters! {
         "Root mean square of the window's colours beside that of its gradients.";
     correlation_interval: usize = 2, [1, 10_000], "frames",
         "The filter learns every so many frames.";
+    scale_weight: f64 = 40.0, [0.0, 1000.0], "per unit of response",
+        "Weight of the scale filter's response in the exponent of the likelihood; 0 leaves it out.";
+    scale_sizes: usize = 17, [5, 101], "sizes",
+        "Sizes that the scale filter looks at; an even number is rounded up.";
+    scale_ratio: f64 = 1.03, [1.001, 1.5], "size over the one before",
+        "The step from one of these sizes to the next.";
+    scale_rate: f64 = 0.025, [0.0001, 1.0], "share a learning",
+        "How far the scale filter moves towards what it learns.";
     peak_share: f64 = 0.5, [0.0, 0.99], "share of particles",
         "Particles drawn around the place where the filter peaks instead of from the walk.";
     peak_spread: f64 = 0.05, [0.001, 10.0], "sqrt(w h) of the part",
