@@ -21,6 +21,7 @@ mod rows;
 mod summary;
 #[cfg(test)]
 pub(crate) mod testing;
+mod text_table;
 mod video;
 
 pub use annotate::{annotate, rgb_from_view};
@@ -32,6 +33,7 @@ pub use pictures::PictureFolder;
 pub use progress::Progress;
 pub use rows::{RowFormat, RowOptions, RowWriter};
 pub use summary::{Summary, tracker_title};
+pub use text_table::TextTable;
 pub use video::{VIDEO_EXTENSIONS, VideoWriter};
 
 /// What happened in one frame of the loop.

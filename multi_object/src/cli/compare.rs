@@ -10,7 +10,7 @@ use anyhow::Result;
 use clap::Args;
 use infopart::{
     geometry::Rect,
-    output::OutputError,
+    output::{OutputError, TextTable},
     program::BadInput,
     sequence::{OpenOptions, open},
 };
@@ -24,7 +24,7 @@ use multi_object::{
     tracking::{Detector, TrackingParameters, USUAL_MIN_AREA},
 };
 
-use super::{deliver, text_table::TextTable};
+use super::deliver;
 
 pub const EXAMPLES: &str = "\
 Examples:

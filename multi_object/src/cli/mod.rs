@@ -14,7 +14,6 @@ mod compare;
 mod filter;
 mod score;
 mod sort;
-mod text_table;
 mod track;
 
 const EXAMPLES: &str = "\

@@ -4,13 +4,13 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Result;
 use clap::{Args, ValueEnum};
-use infopart::program::BadInput;
+use infopart::{output::TextTable, program::BadInput};
 use multi_object::{
     motchallenge::{MotError, read_ground_truth, read_tracks, sequence_name},
     scoring::{Counts, Rules, Scores},
 };
 
-use super::{deliver, text_table::TextTable};
+use super::deliver;
 
 pub const EXAMPLES: &str = "\
 Examples:

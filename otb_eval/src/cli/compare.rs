@@ -4,7 +4,7 @@ use std::{fmt::Write as _, path::PathBuf};
 
 use anyhow::Result;
 use clap::Args;
-use infopart::program::BadInput;
+use infopart::{output::TextTable, program::BadInput};
 use otb_eval::{
     compare::{Comparison, Pair, RESAMPLES, compare},
     protocol::Protocol,
@@ -16,7 +16,6 @@ use serde::Serialize;
 use super::{
     score::{print, write},
     scored::{ScoredArgs, tell},
-    text_table::TextTable,
 };
 
 pub const EXAMPLES: &str = "\

@@ -2,6 +2,7 @@
 
 use std::{collections::BTreeMap, fmt::Write};
 
+use infopart::output::TextTable;
 use otb_eval::{
     dataset::Dataset,
     protocol::{Protocol, starts_of},
@@ -10,8 +11,6 @@ use otb_eval::{
     scoring::{Measure, ScoreProblem, Table},
     toolkits::{Reason, reasons},
 };
-
-use super::text_table::TextTable;
 
 /// Sequences that are named; of the others only the number is told.
 const NAMED: usize = 3;

@@ -22,7 +22,6 @@ mod report;
 mod run;
 mod score;
 mod scored;
-mod text_table;
 
 const EXAMPLES: &str = "\
 Examples, in the order of an evaluation (otb and people are folders of OTB sequences):

@@ -8,7 +8,7 @@ use std::{
 
 use anyhow::Result;
 use clap::Args;
-use infopart::output::{Destination, OutputError, StandardOutput};
+use infopart::output::{Destination, OutputError, StandardOutput, TextTable};
 use otb_eval::{
     protocol::Protocol,
     scoring::{Measure, ScoreProblem, Spread, Table, TrackerScores},
@@ -20,7 +20,6 @@ use super::{
     differences,
     inputs::Problems,
     scored::{ScoredArgs, tell},
-    text_table::TextTable,
 };
 
 pub const EXAMPLES: &str = "\
