@@ -1,6 +1,6 @@
 //! What every command takes that scores results: data, results, trackers, rules.
 
-use std::path::PathBuf;
+use std::{collections::BTreeMap, path::PathBuf};
 
 use anyhow::{Context, Result};
 use clap::{Args, ValueEnum};
@@ -61,28 +61,46 @@ enum LostRows {
     Carry,
 }
 
-/// Sequences without ground truth that are named; results may have many more sequences than the data.
+/// Sequences or segments that are named where many have one problem: results may have many more sequences than the data, and a
+/// seed that was not run lacks every segment.
 const NAMED: usize = 3;
 
-/// Tells what could not be scored, many sequences without ground truth in one line.
+/// Tells what could not be scored: many sequences without ground truth, or many results that a seed lacks, in one line.
 pub fn tell<'a>(unscored: impl IntoIterator<Item = &'a ScoreProblem>, problems: &mut Problems) {
-    let (without_truth, others): (Vec<&ScoreProblem>, Vec<&ScoreProblem>) =
-        unscored.into_iter().partition(|problem| matches!(problem, ScoreProblem::NoTruth { .. }));
-    if without_truth.len() <= NAMED {
-        without_truth.iter().for_each(|problem| problems.tell(problem));
-    } else {
-        let named = without_truth.iter().take(NAMED).filter_map(|problem| match problem {
-            ScoreProblem::NoTruth { sequence } => Some(sequence.as_str()),
-            _ => None,
+    let mut without_truth = Vec::new();
+    let mut missing: BTreeMap<(&str, u64), Vec<&'a ScoreProblem>> = BTreeMap::new();
+    let mut others = Vec::new();
+    for problem in unscored {
+        match problem {
+            ScoreProblem::NoTruth { .. } => without_truth.push(problem),
+            ScoreProblem::Missing { tracker, seed, reason: None, .. } => {
+                missing.entry((tracker, *seed)).or_default().push(problem);
+            }
+            _ => others.push(problem),
+        }
+    }
+    tell_folded(&without_truth, problems, |named| {
+        format!(
+            "{named}: no ground truth of them; add their folders with --data, or choose others with --sequences"
+        )
+    });
+    for ((tracker, seed), group) in missing {
+        tell_folded(&group, problems, |named| {
+            format!(
+                "{tracker}, {named}: no results (seed {seed}); run them, or leave the sequences out with --sequences"
+            )
         });
-        let named: Vec<&str> = named.collect();
-        problems.tell(&format!(
-            "{} and {} more: no ground truth of them; add their folders with --data, or choose others with --sequences",
-            named.join(", "),
-            without_truth.len() - NAMED
-        ));
     }
     others.iter().for_each(|problem| problems.tell(problem));
+}
+
+/// Tells each problem of a kind, or where there are many all of them in a line, made from the names of a few.
+fn tell_folded(group: &[&ScoreProblem], problems: &mut Problems, line: impl Fn(&str) -> String) {
+    if group.len() <= NAMED {
+        return group.iter().for_each(|problem| problems.tell(problem));
+    }
+    let named: Vec<&str> = group.iter().take(NAMED).filter_map(|problem| problem.subject()).collect();
+    problems.tell(&line(&format!("{} and {} more", named.join(", "), group.len() - NAMED)));
 }
 
 impl ScoredArgs {

@@ -80,6 +80,15 @@ impl ScoreProblem {
         matches!(self, Self::Lengths { .. })
     }
 
+    /// The sequence that has no ground truth, or the `SEQ[_SEGMENT]` that has no result; `None` for other problems.
+    pub fn subject(&self) -> Option<&str> {
+        match self {
+            Self::NoTruth { sequence } => Some(sequence),
+            Self::Missing { stem, .. } => Some(stem),
+            _ => None,
+        }
+    }
+
     /// Whether it is the toolkit's own failure, which it would show its user as well.
     pub fn is_crash(&self) -> bool {
         matches!(self, Self::Crash { .. })
