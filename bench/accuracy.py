@@ -15,12 +15,10 @@ import tempfile
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from rivals import OURS, PEOPLE8, PROJECT, data_folder, executable, fail, locate, table
+from rivals import OURS, PROJECT, data_folder, executable, expand, fail, locate, table
 
 RESAMPLES = 2000
 VARIANTS = {"part": [], "whole": ["--region", "whole"], "paper": ["--preset", "paper"]}
-OTHER7 = "Deer David DragonBaby FaceOcc1 Freeman1 Football1 Diving".split()
-LISTS = {"people8": PEOPLE8, "other7": OTHER7}
 
 
 def track(job):
@@ -86,7 +84,7 @@ def main():
 def compare(options, configured):
     ways = {name: VARIANTS[name] for name in options.variants} | configured
     data = data_folder(options.data)
-    names = [name for given in options.sequences for name in LISTS.get(given, [given])]
+    names = expand(options.sequences)
     seeds = range(1, options.seeds + 1)
     jobs = [
         (options.infopart, locate(data, name), flags, seed)

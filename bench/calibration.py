@@ -19,8 +19,7 @@ from pathlib import Path
 
 import numpy as np
 
-from accuracy import OTHER7
-from rivals import PEOPLE8, PROJECT, data_folder, executable, fail, load_numpy, locate, overlaps, read_sequence, table
+from rivals import OTHER7, PEOPLE8, PROJECT, data_folder, executable, fail, load_numpy, locate, overlaps, read_sequence, table
 
 BINS = 10
 # (sequence, first and last frame in which the target is hidden or half hidden, frame from which it must be tracked)

@@ -26,7 +26,10 @@ from pathlib import Path
 
 PROJECT = Path(__file__).resolve().parent.parent
 KINDS = ("otb", "people", "ships")
+OTHER7 = "Deer David DragonBaby FaceOcc1 Freeman1 Football1 Diving".split()
 PEOPLE8 = "Crossing Walking2 David3 Jogging-1 Jogging-2 Couple pedestrian1 person11".split()
+CROWD = [f"pets{identity}" for identity in range(1, 20)]  # Made by crowd.py.
+LISTS = {"people8": PEOPLE8, "other7": OTHER7, "crowd": CROWD}
 RIVALS = ("Boosting", "CSRT", "KCF", "MIL", "MOSSE", "MedianFlow", "TLD", "dlib")
 OURS = "infopart"
 # Frames that the benchmark's ground truth covers, where a folder holds more images than rows.
@@ -67,6 +70,11 @@ def data_folder(given):
     if not any((folder / kind).is_dir() for kind in KINDS):
         fail(f"no sequences at {folder}: give the folder that holds otb/ and people/ with --data or INFOPART_DATA")
     return folder
+
+
+def expand(given):
+    """The sequences of a list's name, or the name itself, of each that is given."""
+    return [name for word in given for name in LISTS.get(word, [word])]
 
 
 def locate(data, name):
@@ -150,10 +158,10 @@ def run_rival(name, sequence, images):
     return Run(seconds, np.array(boxes, float), lost)
 
 
-def run_ours(program, threads, sequence):
+def run_ours(program, flags, sequence):
     with tempfile.TemporaryDirectory() as folder:
         rows = Path(folder) / "boxes.txt"
-        command = [program, "track", sequence.folder, "--threads", threads, "--json", "--quiet", "--out", rows]
+        command = [program, "track", sequence.folder, *flags, "--json", "--quiet", "--out", rows]
         command += ["--target", sequence.target] if sequence.target else []
         done = subprocess.run([str(word) for word in command], capture_output=True, text=True)
         if done.returncode != 0:
@@ -195,7 +203,8 @@ def measure(sequence, names, options):
         turn = number % len(names)
         for name in names[turn:] + names[:turn]:
             if name == OURS:
-                run = run_ours(options.infopart, options.threads, sequence)
+                flags = ["--threads", options.threads, "--region", options.region]
+                run = run_ours(options.infopart, flags, sequence)
             else:
                 run = run_rival(name, sequence, as_rgb if name == "dlib" else images)
             if len(run.boxes) != len(images):
@@ -244,8 +253,10 @@ def arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     add = parser.add_argument
     add("--rivals", default="Boosting", help=f"comma-separated, of: {', '.join(RIVALS)} [default: Boosting]")
-    add("--sequences", nargs="+", default=PEOPLE8, metavar="NAME", help="NAME, or NAME-K for target K [default: people8]")
+    add("--sequences", nargs="+", default=["people8"], metavar="NAME",
+        help="people8, other7, crowd, NAME, or NAME-K for target K [default: people8]")
     add("--rounds", type=int, default=3, help="how often each tracker runs a sequence [default: 3]")
+    add("--region", default="part", help="what InfoPart tracks: part, whole or a fraction [default: part]")
     add("--threads", type=int, default=2, help="threads that each tracker may use [default: 2]")
     add("--infopart", default=PROJECT / "target/release/infopart", help="the program [default: target/release/infopart]")
     add("--data", help="the folder that holds otb/ and people/ [default: INFOPART_DATA]")
@@ -270,7 +281,7 @@ def main():
     load_numpy()
     options.infopart = executable(options.infopart)
     data = data_folder(options.data)
-    sequences = [read_sequence(name, *locate(data, name)) for name in options.sequences]
+    sequences = [read_sequence(name, *locate(data, name)) for name in expand(options.sequences)]
     names = [OURS, *options.rivals]
     for name in options.rivals:
         make_rival(name)  # Fails now rather than in the middle.
@@ -290,7 +301,7 @@ def main():
     )
     print(report(all_found, names, geometric))
     if options.json:
-        settings = {"rounds": options.rounds, "threads": options.threads}
+        settings = {"rounds": options.rounds, "threads": options.threads, "region": options.region}
         everything = {"machine": about, **settings, "geometric_mean_ratio": geometric, "sequences": all_found}
         Path(options.json).write_text(json.dumps(everything, indent=1) + "\n")
 

@@ -2,14 +2,15 @@
 """Shows where the time of an update goes: the stages of `infopart track --timing`, over sequences, at 1 and 2 threads.
 
 A cell is the mean over the sequences, in milliseconds a frame, of the stage's mean over a run; each run is repeated and the
-shortest taken, as other work on the machine only adds. Below stands the least time that writing the integral images can
-take: their bytes over the speed at which numpy copies a large array. The second table is of processor time, which other
+shortest taken, as other work on the machine only adds. Below stands the least time that the memory traffic of the sums and
+integral images can take: their bytes over the speed at which numpy copies a large array. The second table is of processor time, which other
 work hardly changes: what tracking a frame costs on one thread, and what all the rest of the program does, decoding above
 all; it comes from the same run with and without `--stride` of a thousand million. Needs `cargo build --release` and numpy.
 """
 
 import argparse
 import json
+import math
 import os
 import re
 import resource
@@ -17,13 +18,13 @@ import statistics
 import subprocess
 import time
 
-from accuracy import LISTS
-from rivals import PROJECT, data_folder, executable, fail, locate, table
+from rivals import PROJECT, data_folder, executable, expand, fail, locate, table
 
-# Bytes of a cell: three colours and eight orientations of four bytes in the integral images, three colours of one byte before.
-BYTES_PER_CELL = 4 * (3 + 8) + 3
-WINDOW = 4.0  # Side of the searched window over the square root of the box's area.
+WINDOW, GRID = 4.0, 32  # Side of the searched window over the square root of the box's area; grid cells along it.
 PART, MOST_CELLS = 0.625, 4000
+COVERED = 3.0 * 2.0  # What the particles cover, over the part, about.
+CUT = 3 + 3  # Bytes read from the frame and written for each cell of a region.
+INTEGRALS, BLOCK_SUMS = 4 * (3 + 8), 4 * 12  # Bytes of an entry.
 
 
 def passes(program, place, flags, rounds):
@@ -68,12 +69,16 @@ def milliseconds(runs):
     return times
 
 
-def window_bytes(place):
-    """Bytes of the integral images around the first box."""
+def frame_bytes(place):
+    """Bytes that an update must at least read and write around the first box: the window's sums, the integral images."""
     folder, _, truth = place
     w, h = [float(number) for number in re.split(r"[,\s]+", (folder / truth).read_text().strip())[2:4]]
-    step = max(1, -(-((w * PART * h / MOST_CELLS) ** 0.5) // 1))
-    return (WINDOW * (w * h) ** 0.5 / step) ** 2 * BYTES_PER_CELL
+    cell = WINDOW * (w * h) ** 0.5 / GRID
+    step = max(1, math.ceil(cell / 10))
+    block = max(1, int(cell / step / 3))
+    window = (cell * GRID / step) ** 2 * (CUT + BLOCK_SUMS / block**2)
+    part_step = max(1, math.ceil((w * PART * h / MOST_CELLS) ** 0.5))
+    return window + COVERED * w * PART * h / part_step**2 * (CUT + INTEGRALS)
 
 
 def bytes_per_second():
@@ -99,13 +104,13 @@ def main():
     options = parser.parse_args()
     program = executable(options.infopart)
     data = data_folder(options.data)
-    names = [name for given in options.sequences for name in LISTS.get(given, [given])]
+    names = expand(options.sequences)
     places = [locate(data, name) for name in names]
     columns = []
     for threads in (1, 2):
         found = [milliseconds(passes(program, place, ["--threads", threads], options.rounds)) for place in places]
         columns.append({stage: statistics.mean(times.get(stage, 0.0) for times in found) for stage in found[0]})
-    traffic, speed = statistics.mean(map(window_bytes, places)), bytes_per_second()
+    traffic, speed = statistics.mean(map(frame_bytes, places)), bytes_per_second()
     rows = [[stage, *(f"{column[stage]:.3f}" for column in columns)] for stage in columns[0]]
     rows.append([f"least for {traffic / 1e3:.0f} kB at {speed / 1e9:.1f} GB/s", f"{1e3 * traffic / speed:.3f}", ""])
     print(table(["wall milliseconds a frame", "1 thread", "2 threads"], rows))

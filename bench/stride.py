@@ -16,8 +16,7 @@ import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from accuracy import LISTS
-from rivals import OURS, PROJECT, data_folder, executable, fail, locate, table
+from rivals import OURS, PROJECT, data_folder, executable, expand, fail, locate, table
 
 
 def track(program, place, flags):
@@ -51,7 +50,7 @@ def arguments():
 def main():
     options = arguments()
     data = data_folder(options.data)
-    names = [name for given in options.sequences for name in LISTS.get(given, [given])]
+    names = expand(options.sequences)
     places = {name: locate(data, name) for name in names}
     seeds = range(1, options.seeds + 1)
 

@@ -16,9 +16,11 @@ use infopart::{
     correlation::{
         filter::{CorrelationFilter, FilterOptions},
         grid::{CHANNELS, Grid},
+        scale::{ScaleFilter, ScaleOptions},
         window::Window,
     },
     features::{
+        blocks::BlockIntegrals,
         haar::HaarFeature,
         hog::Hog,
         region::{BoxInRegion, RegionIntegrals, SearchRegion},
@@ -43,6 +45,7 @@ const CELLS: usize = 32;
 const WINDOW: f64 = 4.0;
 const FILTER: FilterOptions =
     FilterOptions { side: CELLS, label_sigma: 0.0625, temporal: 30.0, rounds: 2, support: 1.3 };
+const SCALES: ScaleOptions = ScaleOptions { sizes: 17, ratio: 1.03, rate: 0.025 };
 
 /// Frames of the walker, and the person's box in each.
 fn walk() -> (Vec<Frame>, Vec<Rect>) {
@@ -67,7 +70,7 @@ impl Scene {
         let frame = frames.swap_remove(0);
         let part = Region::Part.part_from_full(truth[0]);
         let mut integrals = RegionIntegrals::default();
-        integrals.compute(&frame.view(), search_region(&truth[0]));
+        integrals.compute(&frame.view(), around(&part));
         let mut rng = rng();
         let hypotheses = (0..PARTICLES)
             .map(|_| {
@@ -83,6 +86,11 @@ impl Scene {
         let here = self.integrals.to_region(self.part);
         HaarFeature::random_pool(POOL, f64::from(here.w), f64::from(here.h), 3, &mut rng())
     }
+}
+
+/// About what the particles cover.
+fn around(part: &Rect) -> SearchRegion {
+    SearchRegion::around(Rect::new(part.x - part.w, part.y - part.h, 3.0 * part.w, 3.0 * part.h), 1)
 }
 
 /// The correlation filter's window around a target.
@@ -109,16 +117,15 @@ fn features(c: &mut Criterion) {
     let scene = Scene::new();
     let Scene { frame, full, hypotheses, .. } = &scene;
     let mut integrals = scene.integrals.clone();
-    let region = search_region(full);
-    c.bench_function("integral images of the window", |b| {
-        b.iter(|| integrals.compute(black_box(&frame.view()), region));
-    });
-    let coarse = SearchRegion::around(
-        Rect::new(region.x as f64, region.y as f64, region.width as f64, region.height as f64),
-        2,
-    );
-    c.bench_function("integral images of the window, 2 x 2 pixels a cell", |b| {
-        b.iter(|| integrals.compute(black_box(&frame.view()), coarse));
+    let (window, covered) = (search_region(full), integrals.region());
+    let mut blocks = BlockIntegrals::default();
+    for block in [1, 2, 4] {
+        c.bench_function(&format!("sums over the window, blocks of {block} x {block} pixels"), |b| {
+            b.iter(|| blocks.compute(black_box(&frame.view()), window, block));
+        });
+    }
+    c.bench_function("integral images of what the particles cover", |b| {
+        b.iter(|| integrals.compute(black_box(&frame.view()), covered));
     });
     let integrals = &scene.integrals;
     let read_by_stumps = &scene.pool()[..STUMPS];
@@ -135,10 +142,12 @@ fn features(c: &mut Criterion) {
     });
 }
 
-/// The correlation filter: cells of the window, its response, and learning for the first time and later.
+/// The correlation filters: cells of the window, the response, and learning for the first time and later; sizes.
 fn correlation(c: &mut Criterion) {
-    let Scene { full, integrals, .. } = Scene::new();
+    let Scene { full, frame, .. } = Scene::new();
     let window = Window::around(&full, WINDOW);
+    let mut integrals = BlockIntegrals::default();
+    integrals.compute(&frame.view(), search_region(&full), 2);
     let mut grid = Grid::new(CELLS);
     c.bench_function("grid of 32 x 32 cells", |b| {
         b.iter(|| grid.describe(black_box(&integrals), window, 1.0));
@@ -168,6 +177,9 @@ fn correlation(c: &mut Criterion) {
     c.bench_function("correlation, response at 300 places", |b| {
         b.iter(|| centres.iter().map(|&(x, y)| filter.response().at(x, y)).sum::<f32>());
     });
+    let mut scale = ScaleFilter::new(SCALES, full.h / full.w);
+    c.bench_function("scale filter, learning", |b| b.iter(|| scale.learn(black_box(&integrals), full)));
+    c.bench_function("scale filter, a look", |b| b.iter(|| scale.look(black_box(&integrals), full)));
 }
 
 /// The likelihood of a part as the tracker has it, without threads: a trained classifier and HOG.
