@@ -8,6 +8,7 @@
 //!
 //! All sums are whole numbers and exact. Bands of rows are summed in parallel.
 
+use multiversion::multiversion;
 use rayon::prelude::*;
 
 use crate::frame::FrameView;
@@ -126,7 +127,8 @@ impl Band {
     }
 }
 
-/// Running sums of a row's gradients and colours.
+/// Running sums of a row's gradients and colours. Compiled for processors with and without AVX2.
+#[multiversion(targets("x86_64+avx2"))]
 fn add_up(running: &mut [[u32; LANES]], gradients: &GradientRows, [red, green, blue]: [&[u8]; CHANNELS]) {
     let mut bins = [0; BINS];
     let mut colours = [0u32; LANES - BINS];

@@ -3,6 +3,8 @@
 
 use std::ops::Range;
 
+use multiversion::multiversion;
+
 use super::{cells::Cells, hog::BINS};
 
 /// A gradient's magnitude, split between two neighbouring bins.
@@ -18,7 +20,7 @@ pub(super) struct Gradient {
 
 impl Gradient {
     /// Adds the magnitude to the two bins.
-    #[inline]
+    #[inline(always)]
     pub fn add_to(self, sums: &mut [u32; BINS]) {
         let Self { lower, upper, bin } = self;
         let (lower_mask, upper_mask) = (&BIN_MASKS[bin as usize % BINS], &BIN_MASKS[bin as usize % BINS + 1]);
@@ -53,7 +55,7 @@ impl GradientRows {
     }
 
     /// The gradients of some columns of the row.
-    #[inline]
+    #[inline(always)]
     pub fn of(&self, columns: Range<usize>) -> impl Iterator<Item = Gradient> {
         let shares =
             self.lower[columns.clone()].iter().zip(&self.upper[columns.clone()]).zip(&self.bin[columns]);
@@ -89,27 +91,28 @@ impl GradientRows {
 
     /// The gradients of the middle row, split between the two nearest bins.
     fn differentiate(&mut self) {
-        let Self { luminance: [above, middle, below], lower, upper, bin } = self;
-        let width = middle.len();
-        let mut put = |at: usize, dx: f32, dy: f32| (lower[at], upper[at], bin[at]) = split_gradient(dx, dy);
-        put(0, middle[1.min(width - 1)] - middle[0], below[0] - above[0]);
-        put(
-            width - 1,
-            middle[width - 1] - middle[width.saturating_sub(2)],
-            below[width - 1] - above[width - 1],
-        );
-        if width < 3 {
-            return;
-        }
-        // Slices of one known length, so that the loop works on several pixels at a time.
-        let inside = width - 2;
-        let (before, after) = (&middle[..inside], &middle[2..][..inside]);
-        let (above, below) = (&above[1..][..inside], &below[1..][..inside]);
-        let (lower, upper, bin) =
-            (&mut lower[1..][..inside], &mut upper[1..][..inside], &mut bin[1..][..inside]);
-        for i in 0..inside {
-            (lower[i], upper[i], bin[i]) = split_gradient(after[i] - before[i], below[i] - above[i]);
-        }
+        let Self { luminance, lower, upper, bin } = self;
+        differentiate(luminance, [lower, upper, bin]);
+    }
+}
+
+/// Compiled for processors with and without AVX2, of which the one at hand is asked; the results are the same bits.
+#[multiversion(targets("x86_64+avx2"))]
+fn differentiate([above, middle, below]: &[Vec<f32>; 3], [lower, upper, bin]: [&mut [u32]; 3]) {
+    let width = middle.len();
+    let mut put = |at: usize, dx: f32, dy: f32| (lower[at], upper[at], bin[at]) = split_gradient(dx, dy);
+    put(0, middle[1.min(width - 1)] - middle[0], below[0] - above[0]);
+    put(width - 1, middle[width - 1] - middle[width.saturating_sub(2)], below[width - 1] - above[width - 1]);
+    if width < 3 {
+        return;
+    }
+    // Slices of one known length, so that the loop works on several pixels at a time.
+    let inside = width - 2;
+    let (before, after) = (&middle[..inside], &middle[2..][..inside]);
+    let (above, below) = (&above[1..][..inside], &below[1..][..inside]);
+    let (lower, upper, bin) = (&mut lower[1..][..inside], &mut upper[1..][..inside], &mut bin[1..][..inside]);
+    for i in 0..inside {
+        (lower[i], upper[i], bin[i]) = split_gradient(after[i] - before[i], below[i] - above[i]);
     }
 }
 
@@ -125,7 +128,7 @@ const BIN_MASKS: [[u32; BINS]; BINS + 1] = {
 };
 
 /// What the lower and the upper of the two nearest bins get of a gradient's magnitude, and the upper bin.
-#[inline]
+#[inline(always)]
 fn split_gradient(dx: f32, dy: f32) -> (u32, u32, u32) {
     let magnitude = (dx * dx + dy * dy).sqrt();
     // Half a bin is added, so that the whole part is the upper bin and the rest its share.
@@ -137,7 +140,7 @@ fn split_gradient(dx: f32, dy: f32) -> (u32, u32, u32) {
 }
 
 /// `value`, in [0, 2^22], rounded; ties go to the even neighbour. A cast saturates, which is slow on several at a time.
-#[inline]
+#[inline(always)]
 fn nearest_integer(value: f32) -> u32 {
     const SHIFT: f32 = 8_388_608.0;
     (value + SHIFT).to_bits() - SHIFT.to_bits()
@@ -145,7 +148,7 @@ fn nearest_integer(value: f32) -> u32 {
 
 /// Orientation of a gradient as a share of the half turn, in [0, 1): 0 is horizontal, 0.5 vertical, sign ignored.
 /// Within 3e-5 of atan2.
-#[inline]
+#[inline(always)]
 fn orientation(dx: f32, dy: f32) -> f32 {
     let (ax, ay) = (dx.abs(), dy.abs());
     let ratio = ax.min(ay) / ax.max(ay).max(1e-9);

@@ -8,6 +8,8 @@
 //!
 //! The cost depends on the region alone, never on the frame.
 
+use multiversion::multiversion;
+
 use crate::{frame::FrameView, geometry::Rect};
 
 use super::{cells::Cells, gradient::GradientRows, hog::BINS};
@@ -152,15 +154,22 @@ fn integrate_orientation(cells: &Cells, integral: &mut Vec<[u32; BINS]>, rows: &
     integral[..stride].fill([0; BINS]);
     rows.for_each(cells, 0..height, |row, gradients| {
         let (above, below) = integral[row * stride..].split_at_mut(stride);
-        let mut sums = [0; BINS];
-        below[0] = sums;
-        for ((out, up), gradient) in below[1..].iter_mut().zip(&above[1..]).zip(gradients.of(0..width)) {
-            gradient.add_to(&mut sums);
-            for ((out, up), sum) in out.iter_mut().zip(up).zip(&sums) {
-                *out = up + sum;
-            }
-        }
+        add_row(gradients, above, &mut below[..stride]);
     });
+}
+
+/// The integral image's row below `above`, by its row of gradients. Compiled for processors with and without AVX2.
+#[multiversion(targets("x86_64+avx2"))]
+fn add_row(gradients: &GradientRows, above: &[[u32; BINS]], below: &mut [[u32; BINS]]) {
+    let mut sums = [0; BINS];
+    below[0] = sums;
+    for ((out, up), gradient) in below[1..].iter_mut().zip(&above[1..]).zip(gradients.of(0..above.len() - 1))
+    {
+        gradient.add_to(&mut sums);
+        for ((out, up), sum) in out.iter_mut().zip(up).zip(&sums) {
+            *out = up + sum;
+        }
+    }
 }
 
 fn nearest_line(at: f32, lines: usize) -> usize {
