@@ -19,7 +19,7 @@ from pathlib import Path
 
 import numpy as np
 
-from rivals import OTHER7, PEOPLE8, PROJECT, data_folder, executable, fail, load_numpy, locate, overlaps, read_sequence, table
+from rivals import CROWD, OTHER7, PEOPLE8, PROJECT, data_folder, executable, fail, load_numpy, locate, overlaps, read_sequence, table
 
 BINS = 10
 # (sequence, first and last frame in which the target is hidden or half hidden, frame from which it must be tracked)
@@ -86,12 +86,18 @@ def predict(features, coefficients):
     return 1 / (1 + np.exp(-(coefficients[0] + features @ coefficients[1:])))
 
 
-def judge(passes):
+def evidence(passes):
+    """Of every frame: its sequence, whether it is right, what the program said, and what a fit may use."""
     rows = [(name, row) for name, _, frames in passes for row in frames if row["frame"] > 1 and row["overlap"] is not None]
     sequence = np.array([name for name, _ in rows])
     right = np.array([row["overlap"] > 0.5 for _, row in rows])
     said = np.array([row["confidence"] for _, row in rows])
     features = np.array([[row["mean_stump"], row["hog_distance"], np.log(max(row["peak_sharpness"], 1.0))] for _, row in rows])
+    return sequence, right, said, features
+
+
+def judge(passes, crowd):
+    sequence, right, said, features = evidence(passes)
     names = sorted(set(sequence), key=str.lower)
     weights = np.array([1 / np.sum(sequence == name) for name in names])[np.array([names.index(name) for name in sequence])]
     print(f"{len(right)} frames, {right.mean():.3f} of them right; area under ROC of the confidence: "
@@ -103,9 +109,15 @@ def judge(passes):
         held_out[outside] = predict(features[outside], coefficients)
         lines.append([f"fitted on the {label}: {', '.join(fitted)}", *numbers(right[outside], held_out[outside])])
     lines.append(["the two together", *numbers(right, held_out)])
-    lines.append(["the program's coefficients, fitted on all", *numbers(right, said)])
-    print(table(["judged on the frames it was not fitted on", "ROC", "calibration error", "Brier"], lines))
-    print(f"\nFitted on all: intercept, mean stump, HOG distance, ln sharpness = {np.round(fit(features, right, weights), 2)}\n")
+    on_all = fit(features, right, weights)
+    lines.append(["fitted on all, judged on all", *numbers(right, predict(features, on_all))])
+    lines.append(["the program's coefficients, on all", *numbers(right, said)])
+    if crowd:
+        _, crowd_right, crowd_said, crowd_features = evidence(crowd)
+        lines.append(["fitted on all, judged in a crowd", *numbers(crowd_right, predict(crowd_features, on_all))])
+        lines.append(["the program's coefficients, in a crowd", *numbers(crowd_right, crowd_said)])
+    print(table(["", "ROC", "calibration error", "Brier"], lines))
+    print(f"\nFitted on all: intercept, mean stump, HOG distance, ln sharpness = {np.round(on_all, 2)}\n")
     return bins(right, held_out), bins(right, said)
 
 
@@ -162,6 +174,7 @@ def main():
     parser.add_argument("--seeds", type=int, default=5, help="seeds 1 to this [default: 5]")
     parser.add_argument("--infopart", default=PROJECT / "target/release/infopart", help="the program [default: target/release/infopart]")
     parser.add_argument("--data", help="the folder that holds otb/ and people/ [default: INFOPART_DATA]")
+    parser.add_argument("--crowd", metavar="FOLDER", help="what crowd.py made: judge on it too, which nothing was fitted on")
     parser.add_argument("--plot", metavar="FILE.svg", help="write a reliability plot")
     options = parser.parse_args()
     program = executable(options.infopart)
@@ -169,9 +182,14 @@ def main():
     data = data_folder(options.data)
     sequences = [(name, "part") for name in PEOPLE8] + [(name, "whole") for name in OTHER7]
     jobs = [(program, data, *sequence, seed) for sequence in sequences for seed in range(1, options.seeds + 1)]
+    if options.crowd:
+        crowd = data_folder(options.crowd)
+        jobs += [(program, crowd, name, "part", seed) for name in CROWD for seed in range(1, options.seeds + 1)]
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         passes = list(pool.map(track, jobs))
-    held_out, shipped = judge(passes)
+    held_out, shipped = judge(
+        [one for one in passes if one[0] not in CROWD], [one for one in passes if one[0] in CROWD]
+    )
     hidden(passes)
     if options.plot:
         plot(options.plot, [("on sequences not fitted on", "#c03020", held_out), ("the program's, on all", "#2060b0", shipped)])

@@ -154,6 +154,7 @@ impl InfoPart {
         self.stopwatch.lap("estimate");
         let update_is_due = target.update_is_due(parameters, &fit);
         if update_is_due {
+            // Without the filters samples are taken where the particles are, as printed.
             if target.locator.is_some() {
                 let part = target.estimate.part_in_frame;
                 let field = Sampler::new(parameters).field(&part);
