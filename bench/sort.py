@@ -17,12 +17,7 @@ import time
 from pathlib import Path
 from unittest import mock
 
-PROJECT = Path(__file__).resolve().parent.parent
-
-
-def fail(message):
-    print(f"error: {message}", file=sys.stderr)
-    sys.exit(2)
+from rivals import PROJECT, data_folder, fail
 
 
 def load_reference(path):
@@ -68,13 +63,13 @@ def main():
     add = parser.add_argument
     add("--reference", type=Path, required=True, help="abewley/sort's sort.py")
     add("--mot", type=Path, default=PROJECT / "target/release/mot", help="the program [default: target/release/mot]")
-    add("--data", type=Path, default=os.environ.get("INFOPART_DATA"), help="the folder that holds mot/ [default: INFOPART_DATA]")
+    add("--data", help="the folder that holds mot/ [default: INFOPART_DATA]")
     add("--runs", type=int, default=5, help="runs of either, of which the fastest counts [default: 5]")
     options = parser.parse_args()
     options.mot = options.mot.resolve()
     if not os.access(options.mot, os.X_OK):
         fail(f"no program at {options.mot}: run `cargo build --release --workspace`, or give its path with --mot")
-    files = sorted(Path(options.data or "").glob("mot/*/det/det.txt"))
+    files = sorted(data_folder(options.data).glob("mot/*/det/det.txt"))
     if not files:
         fail("no mot/SEQ/det/det.txt: give the folder that holds mot/ with --data")
     module = load_reference(options.reference)

@@ -10,17 +10,12 @@ import argparse
 import json
 import os
 import subprocess
-import sys
 import tempfile
 from pathlib import Path
 
-PROJECT = Path(__file__).resolve().parent.parent
+from rivals import PROJECT, data_folder, fail
+
 FILTERS = ("kalman", "ekf", "ukf", "pf")
-
-
-def fail(message):
-    print(f"error: {message}", file=sys.stderr)
-    sys.exit(2)
 
 
 def run(command):
@@ -40,13 +35,13 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     add = parser.add_argument
     add("--mot", type=Path, default=PROJECT / "target/release/mot", help="the program [default: target/release/mot]")
-    add("--data", type=Path, default=os.environ.get("INFOPART_DATA"), help="the folder that holds mot/ [default: INFOPART_DATA]")
+    add("--data", help="the folder that holds mot/ [default: INFOPART_DATA]")
     add("--frames", nargs="*", default=[], metavar="NAME=PATH", help="the frames of a sequence")
     add("--max-age", nargs="*", type=int, default=[1, 5, 30], metavar="FRAMES", help="[default: 1 5 30]")
     add("--seeds", type=int, default=5, help="seeds of the particle filter, whose rows are means [default: 5]")
     options = parser.parse_args()
     frames = dict(given.split("=", 1) for given in options.frames)
-    folders = [path.parent.parent for path in sorted(Path(options.data or "").glob("mot/*/gt/gt.txt"))]
+    folders = [path.parent.parent for path in sorted(data_folder(options.data).glob("mot/*/gt/gt.txt"))]
     if not folders:
         fail("no mot/SEQ/gt/gt.txt: give the folder that holds mot/ with --data")
     options.mot = options.mot.resolve()
