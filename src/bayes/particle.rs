@@ -139,7 +139,7 @@ impl<const N: usize, S: Resample> ParticleFilter<N, S> {
         }
     }
 
-    /// Step 1 with a proposal of its own; the weights take p / q. Particles are moved in parallel, each [`STREAM`] of them
+    /// Step 1 with a proposal of its own; the weights take p / q. Particles are moved in parallel, each 256 of them
     /// with random numbers of their own.
     pub fn propose<R: Rng + ?Sized>(
         &mut self,

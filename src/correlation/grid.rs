@@ -2,7 +2,7 @@
 //!
 //! Steps:
 //! 1. the mean gradient magnitude of each of `side` x `side` cells in 8 unsigned orientations, and its mean colours
-//!    ([`lattice`](super::lattice)),
+//!    (`lattice.rs`),
 //! 2. gradients normalised by the energy of the cell's four blocks of 2 x 2 cells and clipped at 0.2: 8 numbers and 4 energies
 //!    (Felzenszwalb, Girshick, McAllester, Ramanan 2010),
 //! 3. luminance and two colour differences, without the window's mean,

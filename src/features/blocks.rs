@@ -1,8 +1,8 @@
 //! Integral images of a search region with entries for blocks of cells only: what a coarse grid needs of a wide window.
 //!
 //! Steps, each frame:
-//! 1. cut the region's cells out of the frame ([`cells`](super::cells)),
-//! 2. along each row of cells, running sums of the gradients' 8 orientations ([`gradient`](super::gradient)) and of the
+//! 1. cut the region's cells out of the frame (`cells.rs`),
+//! 2. along each row of cells, running sums of the gradients' 8 orientations (`gradient.rs`) and of the
 //!    colours, read at each block's right edge and added up over the rows of a block,
 //! 3. added up over the blocks above.
 //!

@@ -1,10 +1,10 @@
 //! Integral images of a search region.
 //!
 //! Steps, each frame:
-//! 1. cut the region's cells out of the frame ([`cells`](super::cells)),
+//! 1. cut the region's cells out of the frame (`cells.rs`),
 //! 2. one integral image a colour channel (exact, u32),
 //! 3. gradient of luminance by central differences; its magnitude, split between the two nearest of 8 unsigned
-//!    orientation bins ([`gradient`](super::gradient)), goes into 8 interleaved integral images (exact, u32).
+//!    orientation bins (`gradient.rs`), goes into 8 interleaved integral images (exact, u32).
 //!
 //! The cost depends on the region alone, never on the frame.
 
