@@ -8,12 +8,12 @@
 //! 3. luminance and two colour differences, without the window's mean,
 //! 4. gradients and colours each scaled to a mean square of 1, and all tapered towards the window's border.
 
-use crate::features::{blocks::BlockIntegrals, hog::BINS};
-
-use super::{
-    lattice::{COLOURS, Lattice},
-    window::Window,
+use crate::features::{
+    blocks::{BlockIntegrals, LANES},
+    hog::BINS,
 };
+
+use super::{lattice::Lattice, window::Window};
 
 const BLOCKS: usize = 4;
 /// Numbers a cell has for its gradients.
@@ -126,8 +126,8 @@ impl Grid {
 }
 
 /// Luminance, red against green, and yellow against blue.
-pub(super) fn colour_differences(means: &[f32]) -> [f32; 3] {
-    let [r, g, b] = [means[COLOURS.start], means[COLOURS.start + 1], means[COLOURS.start + 2]];
+pub(super) fn colour_differences(means: &[f32; LANES]) -> [f32; 3] {
+    let [r, g, b] = [means[BINS], means[BINS + 1], means[BINS + 2]];
     [0.25 * (r + 2.0 * g + b), r - g, 0.5 * (r + g) - b]
 }
 

@@ -2,15 +2,9 @@
 //! whose entries it interpolates. What lies outside their region is nothing.
 
 use crate::{
-    features::{
-        blocks::{BlockIntegrals, LANES},
-        hog::BINS,
-    },
+    features::blocks::{BlockIntegrals, LANES},
     geometry::Rect,
 };
-
-/// Colours of a cell, after its gradients: red, green and blue.
-pub(super) const COLOURS: std::ops::Range<usize> = BINS..BINS + 3;
 
 /// Scratch for reading a lattice of a number of columns and rows.
 #[derive(Debug, Clone)]

@@ -21,12 +21,15 @@ use crate::{
     features::{
         blocks::{BlockIntegrals, LANES},
         hog::BINS,
+        region::CHANNELS,
     },
     geometry::Rect,
 };
 
 use super::{grid::colour_differences, lattice::Lattice, response::cubic_weights};
 
+/// Numbers a cell has.
+const NUMBERS: usize = BINS + CHANNELS;
 /// Cells across the target.
 const COLUMNS: usize = 4;
 /// Largest share that one number may take of the gradients after the first normalisation.
@@ -82,7 +85,7 @@ impl ScaleFilter {
     pub fn new(options: ScaleOptions, aspect: f64) -> Self {
         let sizes = options.sizes;
         let rows = ((COLUMNS as f64 * aspect).round() as usize).clamp(2, 3 * COLUMNS);
-        let length = COLUMNS * rows * (BINS + 3);
+        let length = COLUMNS * rows * NUMBERS;
         let mut planner = FftPlanner::new();
         let (forward, inverse) = (planner.plan_fft_forward(sizes), planner.plan_fft_inverse(sizes));
         let mut label: Vec<Complex32> = (0..sizes)
@@ -184,7 +187,7 @@ impl ScaleFilter {
 
 /// The lattice over a box as one vector.
 fn describe(lattice: &mut Lattice, integrals: &BlockIntegrals, target: Rect, sample: &mut [f32]) {
-    let cells = sample.len() / (BINS + 3);
+    let cells = sample.len() / NUMBERS;
     let (gradients, colours) = sample.split_at_mut(cells * BINS);
     lattice.read(integrals, target, |cell, means: &[f32; LANES]| {
         gradients[cell * BINS..][..BINS].copy_from_slice(&means[..BINS]);
