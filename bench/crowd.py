@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Cuts single people out of a crowd: sequences that no default was chosen on.
+"""Cuts single people out of a crowd: sequences that no default was tuned to.
 
 Makes OTB folders FOLDER/otb/petsK of every identity K of PETS09-S2L1 that its ground truth follows for at least 60 frames
 without a gap, inside the picture; of each the longest such run, its first 250 frames. `--data FOLDER` shows them to
@@ -8,6 +8,7 @@ rivals.py, which with `--sequences crowd` tracks all. Needs ffmpeg; data as for 
 
 import argparse
 import os
+import shutil
 import subprocess
 import sys
 from collections import defaultdict
@@ -68,6 +69,8 @@ def main():
     for path in (video, truth):
         if not path.is_file():
             fail(f"{path} is missing")
+    if shutil.which("ffmpeg") is None:
+        fail("ffmpeg is not installed: it reads the video; install it with your system's packages")
     frames = options.folder / "frames"
     frames.mkdir(parents=True, exist_ok=True)
     subprocess.run(["ffmpeg", "-loglevel", "error", "-y", "-i", video, "-q:v", "2", frames / "%04d.jpg"], check=True)
