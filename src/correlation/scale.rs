@@ -58,6 +58,8 @@ pub struct ScaleOptions {
 #[derive(Clone)]
 pub struct ScaleFilter {
     options: ScaleOptions,
+    /// ln of the ratio of two sizes.
+    step: f64,
     lattice: Lattice,
     /// Numbers of a sample.
     length: usize,
@@ -99,6 +101,7 @@ impl ScaleFilter {
         let scratch = forward.get_inplace_scratch_len().max(inverse.get_inplace_scratch_len());
         Self {
             options,
+            step: options.ratio.ln(),
             lattice: Lattice::new(COLUMNS, rows),
             length,
             taper: (0..sizes)
@@ -141,11 +144,11 @@ impl ScaleFilter {
         self.respond(1.0 / self.own_answer);
     }
 
-    /// The response of the last look for a width: about 1 where the target is as learnt. Beyond the outermost sizes it is
-    /// theirs.
+    /// The response of the last look for a width: about 1 where the target is as learnt. Beyond the sizes inside the
+    /// outermost ones it is theirs.
     pub fn at(&self, width: f64) -> f32 {
         let half = (self.options.sizes / 2) as f64;
-        let steps = ((width / self.width).ln() / self.options.ratio.ln()).clamp(1.0 - half, half - 2.0);
+        let steps = ((width / self.width).ln() / self.step).clamp(1.0 - half, half - 2.0);
         let before = steps.floor();
         let weights = cubic_weights((steps - before) as f32);
         let value = |i: usize| {
