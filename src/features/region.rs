@@ -48,6 +48,12 @@ impl SearchRegion {
             step,
         }
     }
+
+    /// The box of the frame that the cells cover.
+    pub fn to_rect(&self) -> Rect {
+        let side = |cells: usize| (cells * self.step) as f64;
+        Rect::new(self.x as f64, self.y as f64, side(self.width), side(self.height))
+    }
 }
 
 /// A box in cells of a [`RegionIntegrals`], from its top left corner.

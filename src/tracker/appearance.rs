@@ -6,10 +6,14 @@
 //! 3. conf = F(Haar2) (Algorithm 3),
 //! 4. likelihood = exp(alpha * conf - gamma * ||HOG1 - HOG2||^2 + beta * the correlation filter's response
 //!    + its weight * the scale filter's response).
+//!
+//! What it compares with is learnt from samples of frames (Algorithms 4 and 5).
+
+use rand::Rng;
 
 use crate::{
     bayes::Observation,
-    boosting::{StrongClassifier, Stump},
+    boosting::{BoostingOptions, GentleAdaBoost, SampleMemory, StrongClassifier, Stump},
     features::{
         haar::HaarFeature,
         hog::Hog,
@@ -22,19 +26,27 @@ use super::{
     locator::Locator,
     motion::{PartState, box_of},
     parameters::Parameters,
+    sampling::Sampler,
 };
 
 /// What the target looks like.
 #[derive(Debug, Clone)]
 pub(super) struct Appearance {
     /// The Haar-like features that samples are made of.
-    pub pool: Vec<HaarFeature>,
+    pool: Vec<HaarFeature>,
     /// HOG1.
-    pub template: Hog,
+    template: Hog,
     /// The classifier's stumps, each with the feature it reads.
     stumps: Vec<(HaarFeature, Stump)>,
     score_weight: f32,
     hog_weight: f32,
+    /// A in HOG1 += A (HOG2 - HOG1).
+    ageing: f32,
+    sampler: Sampler,
+    memory: SampleMemory,
+    trainer: GentleAdaBoost,
+    classifier: StrongClassifier,
+    sample: Vec<f32>,
 }
 
 /// How well a box fits.
@@ -50,25 +62,57 @@ impl Appearance {
     pub fn new(parameters: &Parameters, pool: Vec<HaarFeature>, template: Hog) -> Self {
         let per_score = if parameters.score_per_root_stump { (parameters.stumps as f64).sqrt() } else { 1.0 };
         Self {
+            sample: Vec::with_capacity(pool.len()),
+            memory: SampleMemory::new(
+                pool.len(),
+                parameters.first_targets + parameters.first_backgrounds,
+                parameters.recent_samples,
+            ),
+            trainer: GentleAdaBoost::new(BoostingOptions {
+                rounds: parameters.stumps,
+                balanced: parameters.balanced_labels,
+                turns: parameters.boosting_turns,
+            }),
+            classifier: StrongClassifier::default(),
+            sampler: Sampler::new(parameters),
             pool,
             template,
+            ageing: parameters.hog_ageing as f32,
             stumps: Vec::with_capacity(parameters.stumps),
             score_weight: (parameters.score_weight / per_score) as f32,
             hog_weight: parameters.hog_weight as f32,
         }
     }
 
-    /// Takes a newly trained classifier.
-    pub fn set_classifier(&mut self, classifier: &StrongClassifier) {
-        self.stumps.clear();
-        self.stumps.extend(classifier.stumps().iter().map(|stump| (self.pool[stump.feature], *stump)));
+    /// Samples the part and its surroundings inside the search region: so many targets and backgrounds (Algorithm 5).
+    pub fn sample<R: Rng + ?Sized>(
+        &mut self,
+        integrals: &RegionIntegrals,
+        part: &Rect,
+        counts: (usize, usize),
+        rng: &mut R,
+    ) {
+        let Self { pool, memory, sample, .. } = self;
+        self.sampler.draw(part, &integrals.region().to_rect(), counts, rng, |part, label| {
+            let hypothesis = integrals.to_region(*part);
+            sample.clear();
+            sample.extend(pool.iter().map(|feature| feature.evaluate(integrals, &hypothesis)));
+            memory.add(sample, label);
+        });
     }
 
-    /// The whole feature vector of a box, for training.
-    pub fn describe(&self, integrals: &RegionIntegrals, part: &Rect, out: &mut Vec<f32>) {
-        let hypothesis = integrals.to_region(*part);
-        out.clear();
-        out.extend(self.pool.iter().map(|feature| feature.evaluate(integrals, &hypothesis)));
+    /// Trains the classifier on all samples in the memory (Algorithm 4).
+    pub fn train(&mut self) {
+        self.trainer.train(&self.memory, &mut self.classifier);
+        self.stumps.clear();
+        self.stumps.extend(self.classifier.stumps().iter().map(|stump| (self.pool[stump.feature], *stump)));
+    }
+
+    /// Lets the template follow what the part looks like now.
+    pub fn age_template(&mut self, integrals: &RegionIntegrals, part: Rect) {
+        if self.ageing > 0.0 {
+            self.template.age_towards(&Hog::of(integrals, &integrals.to_region(part)), self.ageing);
+        }
     }
 
     /// Steps 2 and 3.

@@ -18,7 +18,6 @@ use std::sync::Arc;
 
 use crate::{
     bayes::particle::{ParticleEstimate, ParticleFilter, ParticleFilterOptions},
-    boosting::{BoostingOptions, GentleAdaBoost, SampleMemory, StrongClassifier},
     features::{
         haar::HaarFeature,
         hog::Hog,
@@ -69,11 +68,7 @@ struct Target {
     frame: u64,
     sets: Vec<ParticleFilter<3>>,
     appearance: Appearance,
-    trainer: GentleAdaBoost,
-    classifier: StrongClassifier,
-    memory: SampleMemory,
     estimate: Estimate,
-    sample: Vec<f32>,
     set_estimates: Vec<ParticleEstimate<3>>,
     locator: Option<Locator>,
 }
@@ -160,7 +155,7 @@ impl InfoPart {
                 let field = Sampler::new(parameters).field(&part);
                 self.integrals.compute(&frame, search_region(field, &part, parameters.max_part_cells));
             }
-            target.age_template(parameters.hog_ageing as f32, &self.integrals);
+            target.appearance.age_template(&self.integrals, target.estimate.part_in_frame);
             target.sample(parameters, &self.integrals, (parameters.targets, parameters.backgrounds));
             self.stopwatch.lap("samples");
         }
@@ -197,19 +192,7 @@ impl Target {
             frame: 0,
             sets: (0..parameters.particle_sets).map(|set| particle_set(parameters, &part, set)).collect(),
             appearance: Appearance::new(parameters, pool, Hog::of(integrals, &template)),
-            trainer: GentleAdaBoost::new(BoostingOptions {
-                rounds: parameters.stumps,
-                balanced: parameters.balanced_labels,
-                turns: parameters.boosting_turns,
-            }),
-            classifier: StrongClassifier::default(),
-            memory: SampleMemory::new(
-                parameters.feature_pool,
-                parameters.first_targets + parameters.first_backgrounds,
-                parameters.recent_samples,
-            ),
             estimate,
-            sample: Vec::with_capacity(parameters.feature_pool),
             set_estimates: Vec::with_capacity(parameters.particle_sets),
             locator,
         }
@@ -319,47 +302,23 @@ impl Target {
             && self.estimate.confidence > parameters.update_confidence
     }
 
-    fn age_template(&mut self, rate: f32, integrals: &RegionIntegrals) {
-        if rate > 0.0 {
-            let current = Hog::of(integrals, &integrals.to_region(self.estimate.part_in_frame));
-            self.appearance.template.age_towards(&current, rate);
-        }
-    }
-
     fn sample(
         &mut self,
         parameters: &CheckedParameters,
         integrals: &RegionIntegrals,
         counts: (usize, usize),
     ) {
-        let region = integrals.region();
-        let field = Rect::new(
-            region.x as f64,
-            region.y as f64,
-            (region.width * region.step) as f64,
-            (region.height * region.step) as f64,
-        );
-        let Self { appearance, memory, sample, .. } = self;
         let mut rng = stream(parameters.seed, self.frame, Use::Samples);
-        Sampler::new(parameters).draw(
-            &self.estimate.part_in_frame,
-            &field,
-            counts,
-            &mut rng,
-            |part, label| {
-                appearance.describe(integrals, part, sample);
-                memory.add(sample, label);
-            },
-        );
+        self.appearance.sample(integrals, &self.estimate.part_in_frame, counts, &mut rng);
     }
 
     /// The rest of steps 3d and 3e: the classifier and the correlation filters, each if it is its turn, side by side.
     fn learn(&mut self, train: bool, correlate: bool) {
-        let Self { trainer, memory, classifier, locator, estimate, .. } = self;
+        let Self { appearance, locator, estimate, .. } = self;
         rayon::join(
             || {
                 if train {
-                    trainer.train(memory, classifier);
+                    appearance.train();
                 }
             },
             || {
@@ -368,9 +327,6 @@ impl Target {
                 }
             },
         );
-        if train {
-            self.appearance.set_classifier(&self.classifier);
-        }
     }
 }
 
