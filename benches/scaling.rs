@@ -1,6 +1,6 @@
 //! What the cost of an update follows: the frame's size, the particles, the threads, and what is tracked of the body.
 //!
-//! `cargo bench --bench scaling` prints a table of ratios; with `-- --quick` one round of each instead of seven. The
+//! `cargo bench --bench scaling` prints a table of ratios; with `-- --quick` one round of each instead of fifteen. The
 //! frames lie in memory: nothing is decoded. Every kind of run has its turn in every round, and of each update the shortest
 //! time over the rounds counts, since other work on the machine only adds.
 
@@ -16,7 +16,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 const FRAMES: usize = 60;
-const ROUNDS: usize = 7;
+const ROUNDS: usize = 15;
 const LARGE: (usize, usize) = (1280, 720);
 /// Where the walker's frame lies in the large one.
 const OFFSET: (usize, usize) = (480, 240);

@@ -165,7 +165,7 @@ impl<const N: usize, S: Resample> ParticleFilter<N, S> {
             streams.enumerate().for_each(propose);
         } else {
             let streams = next.par_chunks_mut(STREAM).zip(states.par_chunks(STREAM));
-            streams.zip(log_weights.par_chunks_mut(STREAM)).enumerate().for_each(propose);
+            streams.zip(log_weights.par_chunks_mut(STREAM)).enumerate().with_max_len(1).for_each(propose);
         }
     }
 
@@ -211,6 +211,7 @@ impl<const N: usize, S: Resample> ParticleFilter<N, S> {
             self.states
                 .par_chunks(CHUNK)
                 .zip(self.log_likelihoods.par_chunks_mut(CHUNK))
+                .with_max_len(1)
                 .for_each(|(states, out)| observation.log_likelihoods(states, out));
         }
         for (log_weight, log_likelihood) in self.log_weights.iter_mut().zip(&self.log_likelihoods) {

@@ -124,6 +124,7 @@ impl GentleAdaBoost {
     /// Step 2.
     fn best_stump(&mut self, memory: &SampleMemory, round: usize) -> Stump {
         let (n, signed) = (memory.len(), &self.signed);
+        let total = signed.iter().sum::<f64>();
         let turns = self.options.turns.min(self.splits.len()).max(1);
         let turn = round % turns;
         self.splits
@@ -131,8 +132,8 @@ impl GentleAdaBoost {
             .zip(self.ranks.par_chunks(n))
             .skip(turn)
             .step_by(turns)
-            .with_min_len(8)
-            .for_each(|(splits, ranks)| *splits = best_splits(ranks, signed));
+            .with_min_len(4)
+            .for_each(|(splits, ranks)| *splits = best_splits(ranks, signed, total));
         let mut best: Option<(usize, Split)> = None;
         for (block, splits) in self.splits.iter().enumerate().skip(turn).step_by(turns) {
             for (lane, split) in splits.iter().enumerate() {
@@ -141,7 +142,7 @@ impl GentleAdaBoost {
                 }
             }
         }
-        let all = (1.0, signed.iter().sum::<f64>());
+        let all = (1.0, total);
         match best {
             Some((feature, split)) => {
                 let (ranks, lane) = (&self.ranks[feature / LANES * n..][..n], feature % LANES);

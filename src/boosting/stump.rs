@@ -6,6 +6,8 @@
 //! and with y = +-1 and weights that sum to 1 the error is J = 1 - gain,
 //!   gain = sum(omega y [<=])^2 / sum(omega [<=]) + sum(omega y [>])^2 / sum(omega [>]).
 
+use multiversion::multiversion;
+
 /// A weak classifier.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stump {
@@ -48,10 +50,11 @@ pub(super) struct Split {
 /// A split whose sides' weights have a smaller product than this is rounding error. All weights sum to 1.
 const LIGHTEST: f64 = 1e-14;
 
-/// The best threshold of each of some features, `signed` holding omega y of every sample; weights sum to 1. A gain below 0
-/// means that nothing splits. Among equal gains the smallest threshold wins.
-pub(super) fn best_splits(ranks: &[Rank], signed: &[f64]) -> [Split; LANES] {
-    let total: f64 = signed.iter().sum();
+/// The best threshold of each of some features, `signed` holding omega y of every sample and `total` their sum; weights sum to
+/// 1. A gain below 0 means that nothing splits. Among equal gains the smallest threshold wins. Compiled for
+/// processors with and without AVX2.
+#[multiversion(targets("x86_64+avx2"))]
+pub(super) fn best_splits(ranks: &[Rank], signed: &[f64], total: f64) -> [Split; LANES] {
     let (mut low_weight, mut low_signed) = ([0.0f64; LANES], [0.0f64; LANES]);
     // The best gain as a fraction (comparing fractions needs no division), and its rank.
     let (mut best_over, mut best_under, mut best_rank) = ([-1.0; LANES], [1.0; LANES], [0.0; LANES]);
@@ -121,7 +124,7 @@ mod tests {
             let tied = |i: usize| i + 1 < order.len() && value(i) == value(i + 1);
             let ranks: Vec<Rank> =
                 (0..order.len()).map(|i| [order[i] as u32 | if tied(i) { TIED } else { 0 }; LANES]).collect();
-            let splits = best_splits(&ranks, &self.signed);
+            let splits = best_splits(&ranks, &self.signed, self.signed.iter().sum());
             assert!(splits.iter().all(|split| *split == splits[0]), "lanes agree");
             let split = splits[0];
             if split.gain < 0.0 {

@@ -1,12 +1,12 @@
 //! Integral images of a search region with entries for blocks of cells only: what a coarse grid needs of a wide window.
 //!
 //! Steps, each frame:
-//! 1. cut the region's cells out of the frame (`cells.rs`),
+//! 1. cut the cells of a band of rows out of the frame (`cells.rs`), with a row more on either side,
 //! 2. along each row of cells, running sums of the gradients' 8 orientations (`gradient.rs`) and of the
 //!    colours, read at each block's right edge and added up over the rows of a block,
 //! 3. added up over the blocks above.
 //!
-//! All sums are whole numbers and exact. Bands of rows are summed in parallel.
+//! All sums are whole numbers and exact. Bands go through steps 1 and 2 in parallel.
 
 use multiversion::multiversion;
 use rayon::prelude::*;
@@ -29,7 +29,7 @@ const ROWS_PER_BAND: usize = 16;
 /// Integral images of blocks of cells. Reused from frame to frame.
 #[derive(Debug, Clone)]
 pub struct BlockIntegrals {
-    cells: Cells,
+    region: SearchRegion,
     block: usize,
     sums: Vec<[u32; LANES]>,
     bands: Vec<Band>,
@@ -38,6 +38,7 @@ pub struct BlockIntegrals {
 /// Scratch of a band of rows.
 #[derive(Debug, Clone, Default)]
 struct Band {
+    cells: Cells,
     gradients: GradientRows,
     /// Running sums along a row of cells, up to and with each.
     running: Vec<[u32; LANES]>,
@@ -45,14 +46,14 @@ struct Band {
 
 impl Default for BlockIntegrals {
     fn default() -> Self {
-        Self { cells: Cells::default(), block: 1, sums: Vec::new(), bands: Vec::new() }
+        Self { region: SearchRegion::NOTHING, block: 1, sums: Vec::new(), bands: Vec::new() }
     }
 }
 
 impl BlockIntegrals {
     /// The region that was computed last.
     pub fn region(&self) -> SearchRegion {
-        self.cells.region()
+        self.region
     }
 
     /// Cells along a block's side.
@@ -62,7 +63,7 @@ impl BlockIntegrals {
 
     /// Columns and rows of blocks.
     pub fn size(&self) -> (usize, usize) {
-        (self.region().width / self.block, self.region().height / self.block)
+        (self.region.width / self.block, self.region.height / self.block)
     }
 
     /// Computes the sums of a region, which is widened to whole blocks of `block` x `block` cells, `block` >= 1 (steps 1 to
@@ -70,18 +71,16 @@ impl BlockIntegrals {
     pub fn compute(&mut self, frame: &FrameView<'_>, region: SearchRegion, block: usize) {
         let whole = |cells: usize| cells.div_ceil(block) * block;
         let region = SearchRegion { width: whole(region.width), height: whole(region.height), ..region };
-        self.cells.cut(frame, region);
-        self.block = block;
+        (self.region, self.block) = (region, block);
         let (columns, rows) = self.size();
         let stride = columns + 1;
         self.sums.resize(stride * (rows + 1), [0; LANES]);
         self.bands.resize_with(rows.div_ceil(ROWS_PER_BAND), Band::default);
         let (top, sums) = self.sums.split_at_mut(stride);
         top.fill([0; LANES]);
-        let cells = &self.cells;
         let bands = sums.par_chunks_mut(ROWS_PER_BAND * stride).zip(&mut self.bands);
         bands.enumerate().for_each(|(number, (sums, band))| {
-            band.sum(cells, block, number * ROWS_PER_BAND, sums);
+            band.sum(frame, (region, block), number * ROWS_PER_BAND, sums);
         });
         self.add_above(stride);
     }
@@ -101,25 +100,42 @@ impl BlockIntegrals {
     /// The entry of the blocks above row `row` and left of column `column`.
     #[inline]
     pub(crate) fn entry(&self, row: usize, column: usize) -> &[u32; LANES] {
-        &self.sums[row * (self.region().width / self.block + 1) + column]
+        &self.sums[row * (self.region.width / self.block + 1) + column]
     }
 }
 
 impl Band {
-    /// Step 2 for the rows of blocks from `first` on, whose entries are `sums`.
-    fn sum(&mut self, cells: &Cells, block: usize, first: usize, sums: &mut [[u32; LANES]]) {
-        let width = cells.region().width;
+    /// Steps 1 and 2 for the rows of blocks from `first` on, whose entries are `sums`.
+    fn sum(
+        &mut self,
+        frame: &FrameView<'_>,
+        (region, block): (SearchRegion, usize),
+        first: usize,
+        sums: &mut [[u32; LANES]],
+    ) {
+        let width = region.width;
         let stride = width / block + 1;
+        let (top, height) = (first * block, sums.len() / stride * block);
+        // The gradients of the outer rows need the neighbouring bands' rows.
+        let above = usize::from(top > 0);
+        let below = usize::from(top + height < region.height);
+        let Self { cells, gradients, running } = self;
+        cells.cut(
+            frame,
+            SearchRegion {
+                y: region.y + ((top - above) * region.step) as i64,
+                height: above + height + below,
+                ..region
+            },
+        );
         let planes = cells.planes();
         let colours: [&[u8]; CHANNELS] =
             std::array::from_fn(|channel| planes[channel.min(planes.len() - 1)].as_slice());
-        let Self { gradients, running } = self;
         running.resize(width, [0; LANES]);
         sums.fill([0; LANES]);
-        let top = first * block;
-        gradients.for_each(cells, top..top + sums.len() / stride * block, |row, gradients| {
+        gradients.for_each(cells, above..above + height, |row, gradients| {
             add_up(running, gradients, colours.map(|plane| &plane[row * width..][..width]));
-            let line = &mut sums[(row - top) / block * stride + 1..][..stride - 1];
+            let line = &mut sums[(row - above) / block * stride + 1..][..stride - 1];
             for (out, edge) in line.iter_mut().zip(running.iter().skip(block - 1).step_by(block)) {
                 out.iter_mut().zip(edge).for_each(|(out, sum)| *out += sum);
             }

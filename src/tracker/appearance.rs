@@ -10,10 +10,11 @@
 //! What it compares with is learnt from samples of frames (Algorithms 4 and 5).
 
 use rand::Rng;
+use rayon::prelude::*;
 
 use crate::{
     bayes::Observation,
-    boosting::{BoostingOptions, GentleAdaBoost, SampleMemory, StrongClassifier, Stump},
+    boosting::{BoostingOptions, GentleAdaBoost, Label, SampleMemory, StrongClassifier, Stump},
     features::{
         haar::HaarFeature,
         hog::Hog,
@@ -46,7 +47,9 @@ pub(super) struct Appearance {
     memory: SampleMemory,
     trainer: GentleAdaBoost,
     classifier: StrongClassifier,
-    sample: Vec<f32>,
+    /// Where samples are taken, and their feature vectors, one after another.
+    boxes: Vec<(Rect, Label)>,
+    samples: Vec<f32>,
 }
 
 /// How well a box fits.
@@ -62,7 +65,8 @@ impl Appearance {
     pub fn new(parameters: &Parameters, pool: Vec<HaarFeature>, template: Hog) -> Self {
         let per_score = if parameters.score_per_root_stump { (parameters.stumps as f64).sqrt() } else { 1.0 };
         Self {
-            sample: Vec::with_capacity(pool.len()),
+            boxes: Vec::new(),
+            samples: Vec::new(),
             memory: SampleMemory::new(
                 pool.len(),
                 parameters.first_targets + parameters.first_backgrounds,
@@ -84,25 +88,31 @@ impl Appearance {
         }
     }
 
-    /// Samples the part and its surroundings inside the search region: so many targets and backgrounds (Algorithm 5).
-    pub fn sample<R: Rng + ?Sized>(
+    /// Samples the part and its surroundings inside the search region, so many targets and backgrounds (Algorithm 5), and
+    /// trains the classifier on all samples in the memory (Algorithm 4).
+    pub fn learn<R: Rng + ?Sized>(
         &mut self,
         integrals: &RegionIntegrals,
         part: &Rect,
         counts: (usize, usize),
         rng: &mut R,
     ) {
-        let Self { pool, memory, sample, .. } = self;
-        self.sampler.draw(part, &integrals.region().to_rect(), counts, rng, |part, label| {
-            let hypothesis = integrals.to_region(*part);
-            sample.clear();
-            sample.extend(pool.iter().map(|feature| feature.evaluate(integrals, &hypothesis)));
-            memory.add(sample, label);
-        });
-    }
-
-    /// Trains the classifier on all samples in the memory (Algorithm 4).
-    pub fn train(&mut self) {
+        let Self { pool, memory, boxes, samples, .. } = self;
+        boxes.clear();
+        let field = integrals.region().to_rect();
+        self.sampler.draw(part, &field, counts, rng, |part, label| boxes.push((*part, label)));
+        samples.resize(boxes.len() * pool.len(), 0.0);
+        samples.par_chunks_exact_mut(pool.len()).zip(boxes.par_iter()).with_max_len(1).for_each(
+            |(sample, (part, _))| {
+                let hypothesis = integrals.to_region(*part);
+                for (value, feature) in sample.iter_mut().zip(pool.iter()) {
+                    *value = feature.evaluate(integrals, &hypothesis);
+                }
+            },
+        );
+        for (sample, (_, label)) in samples.chunks_exact(pool.len()).zip(boxes.iter()) {
+            memory.add(sample, *label);
+        }
         self.trainer.train(&self.memory, &mut self.classifier);
         self.stumps.clear();
         self.stumps.extend(self.classifier.stumps().iter().map(|stump| (self.pool[stump.feature], *stump)));

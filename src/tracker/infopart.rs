@@ -5,8 +5,8 @@
 //! 2. sample the part and its surroundings (Algorithm 5), train the classifier F (Algorithm 4), and let the correlation
 //!    filter learn,
 //! 3. in each later frame:
-//!    a. correlate, move the particles by the walk or to the filter's peak, compute integral images of what they cover,
-//!    weigh and resample them (Algorithm 1),
+//!    a. correlate, move the particles by the walk or to the filter's peak (and meanwhile look at the sizes there), compute
+//!    integral images of what they cover, weigh and resample them (Algorithm 1),
 //!    b. estimate the part from the sets and recover the whole box from it,
 //!    c. judge the estimate,
 //!    d. if it is due and the estimate is trusted, sample the new part and retrain F,
@@ -118,9 +118,15 @@ impl InfoPart {
             self.stopwatch.lap("integral images of blocks");
         }
         let mut target = Target::new(parameters, &frame, &self.integrals, box_in_frame, part, locator);
-        target.sample(parameters, &self.integrals, (parameters.first_targets, parameters.first_backgrounds));
-        self.stopwatch.lap("samples");
-        target.learn(true, true);
+        target.appearance.learn(
+            &self.integrals,
+            &part,
+            (parameters.first_targets, parameters.first_backgrounds),
+            &mut stream(parameters.seed, 0, Use::Samples),
+        );
+        if let Some(locator) = &mut target.locator {
+            locator.learn(part);
+        }
         self.stopwatch.lap("learning");
         self.target = Some(target);
     }
@@ -147,19 +153,7 @@ impl InfoPart {
         self.stopwatch.lap("likelihood");
         let fit = target.judge(parameters, &self.integrals);
         self.stopwatch.lap("estimate");
-        let update_is_due = target.update_is_due(parameters, &fit);
-        if update_is_due {
-            // Without the filters samples are taken where the particles are, as printed.
-            if target.locator.is_some() {
-                let part = target.estimate.part_in_frame;
-                let field = Sampler::new(parameters).field(&part);
-                self.integrals.compute(&frame, search_region(field, &part, parameters.max_part_cells));
-            }
-            target.appearance.age_template(&self.integrals, target.estimate.part_in_frame);
-            target.sample(parameters, &self.integrals, (parameters.targets, parameters.backgrounds));
-            self.stopwatch.lap("samples");
-        }
-        target.learn(update_is_due, target.learning_is_due(parameters));
+        target.learn(parameters, &frame, &mut self.integrals, &fit);
         self.stopwatch.lap("learning");
         Ok(target.estimate.clone())
     }
@@ -220,20 +214,28 @@ impl Target {
             about_centre: parameters.scale_about_centre,
             limits: self.limits,
         };
-        for (set, particles) in self.sets.iter_mut().enumerate() {
-            let mut rng = stream(parameters.seed, self.frame, Use::Particles(set));
-            match &self.locator {
-                Some(locator) if parameters.peak_share > 0.0 => {
-                    let proposal = PeakProposal {
-                        walk,
-                        peak: locator.peak_of_part(part),
-                        spread: parameters.peak_spread * part.area().sqrt(),
-                        share: parameters.peak_share,
-                    };
-                    particles.propose(&proposal, &walk, &mut rng);
+        let proposal =
+            self.locator.as_ref().filter(|_| parameters.peak_share > 0.0).map(|locator| PeakProposal {
+                walk,
+                peak: locator.peak_of_part(part),
+                spread: parameters.peak_spread * part.area().sqrt(),
+                share: parameters.peak_share,
+            });
+        let Self { sets, frame, locator, .. } = self;
+        let mut move_particles = || {
+            for (set, particles) in sets.iter_mut().enumerate() {
+                let mut rng = stream(parameters.seed, *frame, Use::Particles(set));
+                match &proposal {
+                    Some(proposal) => particles.propose(proposal, &walk, &mut rng),
+                    None => particles.predict(&walk, &mut rng),
                 }
-                _ => particles.predict(&walk, &mut rng),
             }
+        };
+        match locator {
+            Some(locator) => {
+                rayon::join(move_particles, || locator.look_at_sizes(part));
+            }
+            None => move_particles(),
         }
     }
 
@@ -302,28 +304,40 @@ impl Target {
             && self.estimate.confidence > parameters.update_confidence
     }
 
-    fn sample(
+    /// Steps 3d and 3e, side by side.
+    fn learn(
         &mut self,
         parameters: &CheckedParameters,
-        integrals: &RegionIntegrals,
-        counts: (usize, usize),
+        frame: &FrameView<'_>,
+        integrals: &mut RegionIntegrals,
+        fit: &Fit,
     ) {
-        let mut rng = stream(parameters.seed, self.frame, Use::Samples);
-        self.appearance.sample(integrals, &self.estimate.part_in_frame, counts, &mut rng);
-    }
-
-    /// The rest of steps 3d and 3e: the classifier and the correlation filters, each if it is its turn, side by side.
-    fn learn(&mut self, train: bool, correlate: bool) {
-        let Self { appearance, locator, estimate, .. } = self;
+        let (train, correlate) = (self.update_is_due(parameters, fit), self.learning_is_due(parameters));
+        let Self { appearance, locator, estimate, frame: number, .. } = self;
+        let part = estimate.part_in_frame;
+        // Without the filters samples are taken where the particles are, as printed.
+        let cover_samples = locator.is_some();
         rayon::join(
             || {
-                if train {
-                    appearance.train();
+                if !train {
+                    return;
                 }
+                if cover_samples {
+                    let field = Sampler::new(parameters).field(&part);
+                    integrals.compute(frame, search_region(field, &part, parameters.max_part_cells));
+                }
+                appearance.age_template(integrals, part);
+                let counts = (parameters.targets, parameters.backgrounds);
+                appearance.learn(
+                    integrals,
+                    &part,
+                    counts,
+                    &mut stream(parameters.seed, *number, Use::Samples),
+                );
             },
             || {
                 if let Some(locator) = locator.as_mut().filter(|_| correlate) {
-                    locator.learn(estimate.part_in_frame);
+                    locator.learn(part);
                 }
             },
         );

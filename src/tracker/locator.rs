@@ -75,12 +75,19 @@ impl Locator {
     /// Learns the target with that part in the frame last looked at. What its window has outside that of the last look
     /// counts as flat.
     pub fn learn(&mut self, part: Rect) {
-        self.grid.describe(&self.integrals, self.window(part), self.colour);
-        self.filter.learn(self.grid.planes());
-        let seen = self.seen_from_part(part);
-        if let Some((scale, _)) = &mut self.scale {
-            scale.learn(&self.integrals, seen);
-        }
+        let (window, seen) = (self.window(part), self.seen_from_part(part));
+        let Self { grid, integrals, filter, scale, colour, .. } = self;
+        rayon::join(
+            || {
+                grid.describe(integrals, window, *colour);
+                filter.learn(grid.planes());
+            },
+            || {
+                if let Some((scale, _)) = scale {
+                    scale.learn(integrals, seen);
+                }
+            },
+        );
     }
 
     /// Computes what the filter sees of a frame around where the part was.
@@ -92,11 +99,15 @@ impl Locator {
         self.integrals.compute(frame, SearchRegion::around(window.to_rect(), step as usize), block);
     }
 
-    /// Looks for the target in the frame last seen, around where its part was.
+    /// Looks for the target's place in the frame last seen, around where its part was.
     pub fn look(&mut self, part: Rect) {
         let window = self.window(part);
         self.grid.describe(&self.integrals, window, self.colour);
         self.peak = self.filter.respond(self.grid.planes(), window).peak();
+    }
+
+    /// Looks at the sizes that the target may have where the last look found it, if its part is still as large as that.
+    pub fn look_at_sizes(&mut self, part: Rect) {
         let seen = self.seen_from_part(part);
         if let Some((scale, _)) = &mut self.scale {
             let (x, y) = seen.centre();
