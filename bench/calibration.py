@@ -4,7 +4,7 @@
 Tracks people8 by the part and other7 by the whole box with several seeds. A frame is right if its overlap with the
 ground truth is above one half. Says the area under the ROC curve of the confidence; for the coefficients of the
 program and for logistic regressions fitted on one half of the sequences and judged on the other (in alphabetical
-order every second sequence), the expected calibration error over ten bins of equal mass and the Brier score; and
+order every second sequence; first one of each frame alone, then one that adds the lowest of its log-odds so far), the expected calibration error over ten bins of equal mass and the Brier score; and
 what is said while targets are hidden. Writes a reliability plot. Needs numpy and `cargo build --release`; data as for
 rivals.py.
 """
@@ -22,6 +22,9 @@ import numpy as np
 from rivals import CROWD, OTHER7, PEOPLE8, PROJECT, data_folder, executable, fail, load_numpy, locate, overlaps, read_sequence, table
 
 BINS = 10
+# As in src/tracker/confidence.rs: the lowest log-odds at most, what they rise by in a frame, and those of a frame alone.
+HIGHEST, FORGOTTEN = 4.0, 0.005
+PROGRAM = [-0.42, 2.59, -2.64, 1.29]
 # (sequence, first and last frame in which the target is hidden or half hidden, frame from which it must be tracked)
 HIDDEN = [("Jogging-1", 70, 76, 92), ("Jogging-2", 50, 55, 73)]
 DIPS = [("David3", 80, 90), ("David3", 184, 192)]
@@ -87,37 +90,70 @@ def predict(features, coefficients):
 
 
 def evidence(passes):
-    """Of every frame: its sequence, whether it is right, what the program said, and what a fit may use."""
-    rows = [(name, row) for name, _, frames in passes for row in frames if row["frame"] > 1 and row["overlap"] is not None]
-    sequence = np.array([name for name, _ in rows])
-    right = np.array([row["overlap"] > 0.5 for _, row in rows])
-    said = np.array([row["confidence"] for _, row in rows])
-    features = np.array([[row["mean_stump"], row["hog_distance"], np.log(max(row["peak_sharpness"], 1.0))] for _, row in rows])
-    return sequence, right, said, features
+    """Of every pass, from its second frame on: the sequence, what a frame alone shows, what the program said, whether the
+    frame has a truth, and whether it is right."""
+    found = []
+    for name, _, frames in passes:
+        rows = [row for row in frames if row["frame"] > 1]
+        shown = np.array([[row["mean_stump"], row["hog_distance"], np.log(max(row["peak_sharpness"], 1.0))] for row in rows])
+        said = np.array([row["confidence"] for row in rows])
+        known = np.array([row["overlap"] is not None for row in rows])
+        right = np.array([row["overlap"] is not None and row["overlap"] > 0.5 for row in rows])
+        found.append((name, shown, said, known, right))
+    return found
+
+
+def pooled(found):
+    """Sequence, what is shown and said, and whether it is right, of all frames that have a truth."""
+    sequence = np.array([name for name, _, _, known, _ in found for _ in range(known.sum())])
+    return sequence, *(np.concatenate([one[k][one[3]] for one in found]) for k in (1, 2, 4))
+
+
+def with_memory(found, of_frame):
+    """Log-odds of every frame alone, and the lowest so far, forgotten little by little."""
+    pairs = []
+    for _, shown, _, known, _ in found:
+        log_odds, lowest = of_frame[0] + shown @ of_frame[1:], HIGHEST
+        for value, counts in zip(log_odds, known):
+            lowest = min(value, lowest + FORGOTTEN, HIGHEST)
+            if counts:
+                pairs.append((value, lowest))
+    return np.array(pairs)
 
 
 def judge(passes, crowd):
-    sequence, right, said, features = evidence(passes)
+    found = evidence(passes)
+    sequence, shown, said, right = pooled(found)
     names = sorted(set(sequence), key=str.lower)
     weights = np.array([1 / np.sum(sequence == name) for name in names])[np.array([names.index(name) for name in sequence])]
+
+    def fitted(inside):
+        """Coefficients of the frame alone and of the frame and its memory, by some of the frames; and what they say of all."""
+        of_frame = fit(shown[inside], right[inside], weights[inside])
+        pairs = with_memory(found, of_frame)
+        with_lowest = fit(pairs[inside], right[inside], weights[inside])
+        return of_frame, with_lowest, predict(pairs, with_lowest)
+
     print(f"{len(right)} frames, {right.mean():.3f} of them right; area under ROC of the confidence: "
           f"**{area_under_roc(right, said):.3f}**\n")
     lines, held_out = [], np.empty(len(right))
-    for label, fitted, judged in [("first half", names[::2], names[1::2]), ("second half", names[1::2], names[::2])]:
-        inside, outside = np.isin(sequence, fitted), np.isin(sequence, judged)
-        coefficients = fit(features[inside], right[inside], weights[inside])
-        held_out[outside] = predict(features[outside], coefficients)
-        lines.append([f"fitted on the {label}: {', '.join(fitted)}", *numbers(right[outside], held_out[outside])])
+    for label, half, judged in [("first half", names[::2], names[1::2]), ("second half", names[1::2], names[::2])]:
+        outside = np.isin(sequence, judged)
+        held_out[outside] = fitted(np.isin(sequence, half))[2][outside]
+        lines.append([f"fitted on the {label}: {', '.join(half)}", *numbers(right[outside], held_out[outside])])
     lines.append(["the two together", *numbers(right, held_out)])
-    on_all = fit(features, right, weights)
-    lines.append(["fitted on all, judged on all", *numbers(right, predict(features, on_all))])
+    of_frame, with_lowest, on_all = fitted(np.full(len(right), True))
+    lines.append(["fitted on all, judged on all", *numbers(right, on_all)])
     lines.append(["the program's coefficients, on all", *numbers(right, said)])
+    program = fit(with_memory(found, PROGRAM), right, weights)
     if crowd:
-        _, crowd_right, crowd_said, crowd_features = evidence(crowd)
-        lines.append(["fitted on all, judged in a crowd", *numbers(crowd_right, predict(crowd_features, on_all))])
+        in_crowd = evidence(crowd)
+        _, _, crowd_said, crowd_right = pooled(in_crowd)
+        lines.append(["fitted on all, judged in a crowd", *numbers(crowd_right, predict(with_memory(in_crowd, of_frame), with_lowest))])
         lines.append(["the program's coefficients, in a crowd", *numbers(crowd_right, crowd_said)])
     print(table(["", "ROC", "calibration error", "Brier"], lines))
-    print(f"\nFitted on all: intercept, mean stump, HOG distance, ln sharpness = {np.round(on_all, 2)}\n")
+    print(f"\nFitted on all: of a frame alone, intercept, mean stump, HOG distance, ln sharpness = {np.round(of_frame, 2)}; with its memory, "
+          f"intercept, log-odds, lowest log-odds = {np.round(with_lowest, 2)}, and over the program's log-odds {np.round(program, 2)}\n")
     return bins(right, held_out), bins(right, said)
 
 

@@ -1,4 +1,10 @@
-//! How sure a fit makes the tracker: confidence and status.
+//! How sure the tracker is: confidence and status.
+//!
+//! Steps, each frame:
+//! 1. the log-odds of the frame alone, from its evidence,
+//! 2. the lowest of these so far, which is forgotten little by little: a target that was out of sight may be another since,
+//! 3. the confidence, from both,
+//! 4. the confidence in one word.
 
 use super::estimate::{Evidence, Status};
 
@@ -7,8 +13,8 @@ const TRACKING: f64 = 0.7;
 /// Below this confidence the target is taken for lost.
 const LOST: f64 = 0.35;
 
-/// Log-odds of an overlap above one half as a linear function of the evidence.
-struct LogOdds {
+/// Log-odds of an overlap above one half as a linear function of what a frame shows.
+struct OfFrame {
     intercept: f64,
     /// What a mean stump of 1 adds.
     per_mean_stump: f64,
@@ -18,26 +24,79 @@ struct LogOdds {
     per_log_sharpness: f64,
 }
 
+/// The same as a linear function of a frame's log-odds and the lowest.
+struct WithMemory {
+    intercept: f64,
+    per_log_odds: f64,
+    per_lowest: f64,
+}
+
 /// Logistic regressions over the frames of real sequences, people by their part and others by the whole box, each
 /// sequence weighing the same; docs/calibration.md says which, and how well they hold on others.
-const WITH_CORRELATION: LogOdds =
-    LogOdds { intercept: -0.42, per_mean_stump: 2.59, per_hog_distance: 2.64, per_log_sharpness: 1.29 };
-const WITHOUT_CORRELATION: LogOdds =
-    LogOdds { intercept: 1.9, per_mean_stump: 3.8, per_hog_distance: 3.8, per_log_sharpness: 0.0 };
+const WITH_CORRELATION: OfFrame =
+    OfFrame { intercept: -0.42, per_mean_stump: 2.59, per_hog_distance: 2.64, per_log_sharpness: 1.29 };
+const WITHOUT_CORRELATION: OfFrame =
+    OfFrame { intercept: 1.9, per_mean_stump: 3.8, per_hog_distance: 3.8, per_log_sharpness: 0.0 };
+const WITH_MEMORY: WithMemory = WithMemory { intercept: 0.23, per_log_odds: 0.69, per_lowest: 0.31 };
 
-/// The probability that the estimate overlaps the target by more than one half, in (0, 1).
-pub(super) fn confidence(evidence: &Evidence) -> f64 {
+/// The lowest log-odds before anything was seen, and at most.
+const HIGHEST: f64 = 4.0;
+/// What the lowest log-odds rise by in a frame.
+const FORGOTTEN: f64 = 0.005;
+
+/// What is believed of an estimate: probabilities that it overlaps the target by more than one half, in (0, 1).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Belief {
+    /// From the frame alone: whether it is worth learning from.
+    pub of_frame: f64,
+    /// From the frame and those before: what the tracker reports.
+    pub confidence: f64,
+}
+
+/// Turns evidence into belief, frame after frame.
+#[derive(Debug, Clone)]
+pub(super) struct Judge {
+    lowest_log_odds: f64,
+}
+
+impl Default for Judge {
+    fn default() -> Self {
+        Self { lowest_log_odds: HIGHEST }
+    }
+}
+
+impl Judge {
+    /// Steps 1 to 3; writes into the evidence what was remembered. Without the correlation filter there is no memory: the frame
+    /// speaks alone.
+    pub fn judge(&mut self, evidence: &mut Evidence) -> Belief {
+        let of_frame = log_odds(evidence);
+        let mut with_memory = of_frame;
+        if evidence.peak_sharpness.is_some() {
+            self.lowest_log_odds = of_frame.min(self.lowest_log_odds + FORGOTTEN).min(HIGHEST);
+            evidence.lowest_log_odds = Some(self.lowest_log_odds);
+            let WithMemory { intercept, per_log_odds, per_lowest } = WITH_MEMORY;
+            with_memory = intercept + per_log_odds * of_frame + per_lowest * self.lowest_log_odds;
+        }
+        Belief { of_frame: probability(of_frame), confidence: probability(with_memory) }
+    }
+}
+
+/// Step 1.
+fn log_odds(evidence: &Evidence) -> f64 {
     let (model, sharpness) = match evidence.peak_sharpness {
         Some(sharpness) => (WITH_CORRELATION, sharpness.max(1.0)),
         None => (WITHOUT_CORRELATION, 1.0),
     };
-    let log_odds = model.intercept + model.per_mean_stump * evidence.mean_stump
+    model.intercept + model.per_mean_stump * evidence.mean_stump
         - model.per_hog_distance * evidence.hog_distance
-        + model.per_log_sharpness * sharpness.ln();
+        + model.per_log_sharpness * sharpness.ln()
+}
+
+fn probability(log_odds: f64) -> f64 {
     1.0 / (1.0 + (-log_odds).exp())
 }
 
-/// The confidence in one word.
+/// Step 4.
 pub(super) fn status(confidence: f64) -> Status {
     if confidence >= TRACKING {
         Status::Tracking
@@ -52,15 +111,48 @@ pub(super) fn status(confidence: f64) -> Status {
 mod tests {
     use super::*;
 
+    fn evidence(mean_stump: f64, hog_distance: f64, peak_sharpness: Option<f64>) -> Evidence {
+        Evidence { mean_stump, hog_distance, peak_sharpness, lowest_log_odds: None }
+    }
+
+    fn clear() -> Evidence {
+        evidence(0.7, 0.2, Some(25.0))
+    }
+
     #[test]
     fn a_better_fit_is_surer_and_the_words_follow() {
         let of = |mean_stump, hog_distance, peak_sharpness| {
-            confidence(&Evidence { mean_stump, hog_distance, peak_sharpness })
+            Judge::default().judge(&mut evidence(mean_stump, hog_distance, peak_sharpness)).confidence
         };
         assert!(of(0.5, 0.2, None) > of(0.0, 0.2, None) && of(0.5, 0.2, None) > of(0.5, 0.8, None));
         assert!(of(0.5, 0.2, Some(20.0)) > of(0.5, 0.2, Some(10.0)));
         assert_eq!(status(of(0.7, 0.2, Some(25.0))), Status::Tracking);
         assert_eq!(status(of(-0.4, 0.5, Some(10.0))), Status::Uncertain);
         assert_eq!(status(of(-0.8, 0.9, Some(8.0))), Status::Lost);
+    }
+
+    #[test]
+    fn after_a_loss_a_clear_frame_is_not_as_sure_as_before_until_the_loss_is_forgotten() {
+        let mut judge = Judge::default();
+        let before = judge.judge(&mut clear());
+        let mut hidden = evidence(-0.8, 0.9, Some(8.0));
+        judge.judge(&mut hidden);
+        assert_eq!(hidden.lowest_log_odds, Some(log_odds(&hidden)));
+        let mut again = clear();
+        let after = judge.judge(&mut again);
+        assert_eq!(after.of_frame, before.of_frame);
+        assert!(after.confidence < before.confidence - 0.02, "{} {}", after.confidence, before.confidence);
+        assert!((again.lowest_log_odds.unwrap() - hidden.lowest_log_odds.unwrap() - FORGOTTEN).abs() < 1e-12);
+        let later = (0..2000).map(|_| judge.judge(&mut clear())).last().unwrap();
+        assert_eq!(later.confidence, before.confidence);
+    }
+
+    #[test]
+    fn without_the_filter_the_frame_speaks_alone() {
+        let mut judge = Judge::default();
+        judge.judge(&mut evidence(-0.9, 1.0, None));
+        let mut later = evidence(0.6, 0.2, None);
+        let belief = judge.judge(&mut later);
+        assert_eq!((belief.confidence, later.lowest_log_odds), (belief.of_frame, None));
     }
 }

@@ -61,6 +61,9 @@ pub struct Evidence {
     /// How far the correlation filter's peak stands above the rest of its window, in standard deviations of the rest; `None`
     /// without the filter.
     pub peak_sharpness: Option<f64>,
+    /// The lowest log-odds that a frame alone has given since the first, forgotten by 0.005 a frame: after a loss the target may
+    /// be another. `None` without the filter.
+    pub lowest_log_odds: Option<f64>,
 }
 
 impl Estimate {

@@ -31,7 +31,7 @@ use rand::RngExt;
 use super::{
     TrackError, Tracker,
     appearance::{Appearance, Fit, FrameObservation},
-    confidence::{confidence, status},
+    confidence::{Belief, Judge, status},
     estimate::{BoxWarning, Estimate, Evidence, StageTime, Status, WeightedBox},
     first_box,
     locator::Locator,
@@ -69,6 +69,9 @@ struct Target {
     sets: Vec<ParticleFilter<3>>,
     appearance: Appearance,
     estimate: Estimate,
+    /// How probable the last frame alone made its estimate, in (0, 1).
+    trust: f64,
+    judge: Judge,
     set_estimates: Vec<ParticleEstimate<3>>,
     locator: Option<Locator>,
 }
@@ -187,6 +190,8 @@ impl Target {
             sets: (0..parameters.particle_sets).map(|set| particle_set(parameters, &part, set)).collect(),
             appearance: Appearance::new(parameters, pool, Hog::of(integrals, &template)),
             estimate,
+            trust: 1.0,
+            judge: Judge::default(),
             set_estimates: Vec::with_capacity(parameters.particle_sets),
             locator,
         }
@@ -276,12 +281,14 @@ impl Target {
         let (mean, covariance) = merge(&self.set_estimates);
         let part = box_of(&mean, self.aspect);
         let fit = self.appearance.fit(integrals, &integrals.to_region(part));
-        let evidence = Evidence {
+        let mut evidence = Evidence {
             mean_stump: f64::from(fit.score) / parameters.stumps as f64,
             hog_distance: f64::from(fit.hog_distance),
             peak_sharpness: self.locator.as_ref().map(Locator::sharpness),
+            lowest_log_odds: None,
         };
-        let confidence = confidence(&evidence);
+        let Belief { of_frame, confidence } = self.judge.judge(&mut evidence);
+        self.trust = of_frame;
         let full = parameters.region.full_from_part(part);
         self.estimate = Estimate::new(full, part, confidence, status(confidence));
         self.estimate.effective_sample_size =
@@ -295,13 +302,13 @@ impl Target {
     fn update_is_due(&self, parameters: &CheckedParameters, fit: &Fit) -> bool {
         self.frame.is_multiple_of(parameters.update_interval as u64)
             && f64::from(fit.score) > parameters.update_score
-            && self.estimate.confidence > parameters.update_confidence
+            && self.trust > parameters.update_confidence
     }
 
     /// Step 3e.
     fn learning_is_due(&self, parameters: &CheckedParameters) -> bool {
         self.frame.is_multiple_of(parameters.correlation_interval as u64)
-            && self.estimate.confidence > parameters.update_confidence
+            && self.trust > parameters.update_confidence
     }
 
     /// Steps 3d and 3e, side by side.

@@ -200,7 +200,7 @@ parameters! {
     update_score: f64 = 2.0, [-1000.0, 1000.0], "score",
         "And only if the classifier's score of the estimate is above this.";
     update_confidence: f64 = 0.5, [0.0, 1.0], "probability",
-        "Nothing is learnt from a frame whose confidence is below this.";
+        "Nothing is learnt from a frame that, taken alone, gives a lower probability of an overlap above one half.";
 }
 
 impl Parameters {
