@@ -68,7 +68,7 @@ impl Default for Judge {
 impl Judge {
     /// Steps 1 to 3; writes into the evidence what was remembered. Without the correlation filter there is no memory: the frame
     /// speaks alone.
-    pub fn judge(&mut self, evidence: &mut Evidence) -> Belief {
+    pub fn believe(&mut self, evidence: &mut Evidence) -> Belief {
         let of_frame = log_odds(evidence);
         let mut with_memory = of_frame;
         if evidence.peak_sharpness.is_some() {
@@ -122,7 +122,7 @@ mod tests {
     #[test]
     fn a_better_fit_is_surer_and_the_words_follow() {
         let of = |mean_stump, hog_distance, peak_sharpness| {
-            Judge::default().judge(&mut evidence(mean_stump, hog_distance, peak_sharpness)).confidence
+            Judge::default().believe(&mut evidence(mean_stump, hog_distance, peak_sharpness)).confidence
         };
         assert!(of(0.5, 0.2, None) > of(0.0, 0.2, None) && of(0.5, 0.2, None) > of(0.5, 0.8, None));
         assert!(of(0.5, 0.2, Some(20.0)) > of(0.5, 0.2, Some(10.0)));
@@ -134,25 +134,25 @@ mod tests {
     #[test]
     fn after_a_loss_a_clear_frame_is_not_as_sure_as_before_until_the_loss_is_forgotten() {
         let mut judge = Judge::default();
-        let before = judge.judge(&mut clear());
+        let before = judge.believe(&mut clear());
         let mut hidden = evidence(-0.8, 0.9, Some(8.0));
-        judge.judge(&mut hidden);
+        judge.believe(&mut hidden);
         assert_eq!(hidden.lowest_log_odds, Some(log_odds(&hidden)));
         let mut again = clear();
-        let after = judge.judge(&mut again);
+        let after = judge.believe(&mut again);
         assert_eq!(after.of_frame, before.of_frame);
         assert!(after.confidence < before.confidence - 0.02, "{} {}", after.confidence, before.confidence);
         assert!((again.lowest_log_odds.unwrap() - hidden.lowest_log_odds.unwrap() - FORGOTTEN).abs() < 1e-12);
-        let later = (0..2000).map(|_| judge.judge(&mut clear())).last().unwrap();
+        let later = (0..2000).map(|_| judge.believe(&mut clear())).last().unwrap();
         assert_eq!(later.confidence, before.confidence);
     }
 
     #[test]
     fn without_the_filter_the_frame_speaks_alone() {
         let mut judge = Judge::default();
-        judge.judge(&mut evidence(-0.9, 1.0, None));
+        judge.believe(&mut evidence(-0.9, 1.0, None));
         let mut later = evidence(0.6, 0.2, None);
-        let belief = judge.judge(&mut later);
+        let belief = judge.believe(&mut later);
         assert_eq!((belief.confidence, later.lowest_log_odds), (belief.of_frame, None));
     }
 }

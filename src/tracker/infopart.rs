@@ -287,7 +287,7 @@ impl Target {
             peak_sharpness: self.locator.as_ref().map(Locator::sharpness),
             lowest_log_odds: None,
         };
-        let Belief { of_frame, confidence } = self.judge.judge(&mut evidence);
+        let Belief { of_frame, confidence } = self.judge.believe(&mut evidence);
         self.trust = of_frame;
         let full = parameters.region.full_from_part(part);
         self.estimate = Estimate::new(full, part, confidence, status(confidence));
