@@ -11,7 +11,7 @@ use super::region::SearchRegion;
 pub const CHANNELS: usize = 3;
 
 /// Pixels along a cell's side that are averaged at most.
-const SAMPLES_PER_SIDE: usize = 4;
+const MOST_SAMPLES: usize = 4;
 
 /// Cells of a region, a plane a colour channel. Reused from frame to frame.
 #[derive(Debug, Clone)]
@@ -19,11 +19,13 @@ pub(super) struct Cells {
     region: SearchRegion,
     channels: usize,
     planes: [Vec<u8>; CHANNELS],
+    /// Sums of the samples of a row of cells.
+    sums: Vec<u16>,
 }
 
 impl Default for Cells {
     fn default() -> Self {
-        Self { region: SearchRegion::NOTHING, channels: 1, planes: Default::default() }
+        Self { region: SearchRegion::NOTHING, channels: 1, planes: Default::default(), sums: Vec::new() }
     }
 }
 
@@ -50,7 +52,12 @@ impl Cells {
         for plane in &mut self.planes[..self.channels] {
             plane.resize(region.width * region.height, 0);
         }
-        if region.step == 1 { self.cut_pixels(frame) } else { self.cut_averages(frame) }
+        match region.step {
+            1 => self.cut_pixels(frame),
+            2 => self.cut_averages::<2>(frame),
+            3 => self.cut_averages::<3>(frame),
+            _ => self.cut_averages::<MOST_SAMPLES>(frame),
+        }
     }
 
     fn cut_pixels(&mut self, frame: &FrameView<'_>) {
@@ -77,28 +84,43 @@ impl Cells {
         }
     }
 
-    fn cut_averages(&mut self, frame: &FrameView<'_>) {
-        let SearchRegion { x, y, width, height, step } = self.region;
+    /// Cells of `step` pixels, `SAMPLES` of which are read along each side.
+    fn cut_averages<const SAMPLES: usize>(&mut self, frame: &FrameView<'_>) {
+        let SearchRegion { x, y, width, step, .. } = self.region;
         let size = frame.format().bytes_per_pixel();
-        let offsets = frame.format().rgb_offsets();
         let (last_x, last_y) = (frame.width() as i64 - 1, frame.height() as i64 - 1);
-        let per_side = step.min(SAMPLES_PER_SIDE);
-        let samples = (per_side * per_side) as u32;
-        let sample = |cell: usize, i: usize| (cell * step + (2 * i + 1) * step / (2 * per_side)) as i64;
-        for row in 0..height {
-            for column in 0..width {
-                let mut sums = [0u32; CHANNELS];
-                for dy in 0..per_side {
-                    let pixels = frame.row((y + sample(row, dy)).clamp(0, last_y) as usize);
-                    for dx in 0..per_side {
-                        let at = (x + sample(column, dx)).clamp(0, last_x) as usize * size;
-                        for (sum, offset) in sums.iter_mut().zip(offsets).take(self.channels) {
-                            *sum += u32::from(pixels[at + offset]);
+        let samples: [usize; SAMPLES] = std::array::from_fn(|i| (2 * i + 1) * step / (2 * SAMPLES));
+        // Cells [inside_from, inside_to) of a row lie in the frame; the others repeat its edge.
+        let cells_to = |pixels: i64| (pixels.max(0) as usize / step).min(width);
+        let inside_from = cells_to(step as i64 - 1 - x);
+        let inside_to = cells_to(last_x + 1 - x).max(inside_from);
+        let first = (x + (inside_from * step) as i64).max(0) as usize * size;
+        let offsets = frame.format().rgb_offsets();
+        let Self { planes, sums, channels, .. } = self;
+        sums.resize(width, 0);
+        for (plane, offset) in planes.iter_mut().zip(offsets).take(*channels) {
+            for (row, cells) in plane.chunks_exact_mut(width).enumerate() {
+                sums.fill(0);
+                for dy in samples {
+                    let pixels = frame.row((y + (row * step + dy) as i64).clamp(0, last_y) as usize);
+                    for column in (0..inside_from).chain(inside_to..width) {
+                        for dx in samples {
+                            let at = (x + (column * step + dx) as i64).clamp(0, last_x) as usize;
+                            sums[column] += u16::from(pixels[at * size + offset]);
                         }
                     }
+                    let inside = &mut sums[inside_from..inside_to];
+                    if inside.is_empty() {
+                        continue;
+                    }
+                    let pixels = pixels[first..][..inside.len() * step * size].chunks_exact(step * size);
+                    for (sum, pixels) in inside.iter_mut().zip(pixels) {
+                        *sum += samples.iter().map(|dx| u16::from(pixels[dx * size + offset])).sum::<u16>();
+                    }
                 }
-                for (cells, sum) in self.planes.iter_mut().zip(sums).take(self.channels) {
-                    cells[row * width + column] = ((sum + samples / 2) / samples) as u8;
+                let count = (SAMPLES * SAMPLES) as u16;
+                for (cell, sum) in cells.iter_mut().zip(sums.iter()) {
+                    *cell = ((sum + count / 2) / count) as u8;
                 }
             }
         }
@@ -108,7 +130,8 @@ impl Cells {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::frame::Frame;
+    use crate::{features::reference, frame::Frame};
+    use proptest::prelude::*;
 
     #[test]
     fn a_cell_of_two_by_two_pixels_is_their_rounded_mean() {
@@ -126,6 +149,33 @@ mod tests {
         cells.cut(&frame.view(), SearchRegion { x: 0, y: 0, width: 1, height: 1, step: 8 });
         // Columns and rows 1, 3, 5, 7.
         assert_eq!(cells.planes(), [[4 + 40]]);
+    }
+
+    proptest! {
+        /// Pixel by pixel, wherever the region lies.
+        #[test]
+        fn cells_are_the_rounded_means_of_their_samples(
+            (x, y) in (-40i64..60, -40i64..60), (width, height) in (1usize..12, 1usize..12), step in 2usize..10,
+            format in prop::sample::select(vec![PixelFormat::Gray, PixelFormat::Rgb, PixelFormat::Bgra]),
+        ) {
+            let frame = reference::textured_frame(31, 23, format);
+            let mut cells = Cells::default();
+            cells.cut(&frame.view(), SearchRegion { x, y, width, height, step });
+            let per_side = step.min(4);
+            let sample = |cell: usize, i: usize| (cell * step + (2 * i + 1) * step / (2 * per_side)) as i64;
+            for (channel, plane) in cells.planes().iter().enumerate() {
+                for (at, found) in plane[..width * height].iter().enumerate() {
+                    let (row, column) = (at / width, at % width);
+                    let mut sum = 0;
+                    for i in 0..per_side * per_side {
+                        let (px, py) = (x + sample(column, i % per_side), y + sample(row, i / per_side));
+                        sum += u32::from(reference::sample(&frame.view(), px, py)[channel]);
+                    }
+                    let count = (per_side * per_side) as u32;
+                    prop_assert_eq!(u32::from(*found), (sum + count / 2) / count);
+                }
+            }
+        }
     }
 
     #[test]
