@@ -4,9 +4,9 @@
 Tracks people8 by the part and other7 by the whole box with several seeds. A frame is right if its overlap with the
 ground truth is above one half. Says the area under the ROC curve of the confidence; for the coefficients of the
 program and for logistic regressions fitted on one half of the sequences and judged on the other (in alphabetical
-order every second sequence; first one of each frame alone, then one that adds the lowest of its log-odds so far), the expected calibration error over ten bins of equal mass and the Brier score; and
-what is said while targets are hidden. Writes a reliability plot. Needs numpy and `cargo build --release`; data as for
-rivals.py.
+order every second sequence; first one of each frame alone, then one that adds the lowest of its log-odds so far),
+the expected calibration error over ten bins of equal mass and the Brier score; and what is said while targets are
+hidden. Writes a reliability plot. Needs numpy and `cargo build --release`; data as for rivals.py.
 """
 
 import argparse

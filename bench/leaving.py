@@ -18,7 +18,7 @@ from rivals import PROJECT, data_folder, executable, fail, table
 
 EDGE = 15  # Pixels from a side within which a last box has left.
 BEFORE, AFTER, GONE = 60, 40, 5
-FRAMES = 795
+FRAMES = 795  # Of the video.
 STATES = ("tracking", "uncertain", "lost")
 
 

@@ -260,10 +260,10 @@ mod tests {
         for step in [1, 2, 3] {
             let target = Rect::new(-3.4, 10.6, 20.1, 7.7);
             let region = SearchRegion::around(target, step);
-            let (right, bottom) = (region.width * step, region.height * step);
-            assert!(region.x as f64 + step as f64 <= target.x && region.y as f64 + step as f64 <= target.y);
-            assert!((region.x as f64 + right as f64) >= target.right());
-            assert!((region.y as f64 + bottom as f64) >= target.bottom());
+            let covered = region.to_rect();
+            assert!(covered.x + step as f64 <= target.x && covered.y + step as f64 <= target.y);
+            assert!(covered.right() >= target.right() && covered.bottom() >= target.bottom());
+            assert!(covered.right() < target.right() + 2.0 * step as f64);
         }
     }
 }
