@@ -3,6 +3,8 @@
 //! Edge pixels are repeated outside the frame. A cell is the mean of its `step` x `step` pixels, or of 4 x 4 of them evenly
 //! spaced where there are more, so that the cost follows the cells and not the pixels.
 
+use std::ops::Range;
+
 use crate::frame::{FrameView, PixelFormat};
 
 use super::region::SearchRegion;
@@ -86,43 +88,71 @@ impl Cells {
 
     /// Cells of `step` pixels, `SAMPLES` of which are read along each side.
     fn cut_averages<const SAMPLES: usize>(&mut self, frame: &FrameView<'_>) {
-        let SearchRegion { x, y, width, step, .. } = self.region;
-        let size = frame.format().bytes_per_pixel();
-        let (last_x, last_y) = (frame.width() as i64 - 1, frame.height() as i64 - 1);
-        let samples: [usize; SAMPLES] = std::array::from_fn(|i| (2 * i + 1) * step / (2 * SAMPLES));
-        // Cells [inside_from, inside_to) of a row lie in the frame; the others repeat its edge.
-        let cells_to = |pixels: i64| (pixels.max(0) as usize / step).min(width);
-        let inside_from = cells_to(step as i64 - 1 - x);
-        let inside_to = cells_to(last_x + 1 - x).max(inside_from);
-        let first = (x + (inside_from * step) as i64).max(0) as usize * size;
-        let offsets = frame.format().rgb_offsets();
+        let SearchRegion { y, width, step, .. } = self.region;
+        let columns = Columns::<SAMPLES>::of(frame, self.region);
+        let last_y = frame.height() as i64 - 1;
+        let count = (SAMPLES * SAMPLES) as u16;
         let Self { planes, sums, channels, .. } = self;
         sums.resize(width, 0);
-        for (plane, offset) in planes.iter_mut().zip(offsets).take(*channels) {
+        for (plane, offset) in planes.iter_mut().zip(frame.format().rgb_offsets()).take(*channels) {
             for (row, cells) in plane.chunks_exact_mut(width).enumerate() {
                 sums.fill(0);
-                for dy in samples {
-                    let pixels = frame.row((y + (row * step + dy) as i64).clamp(0, last_y) as usize);
-                    for column in (0..inside_from).chain(inside_to..width) {
-                        for dx in samples {
-                            let at = (x + (column * step + dx) as i64).clamp(0, last_x) as usize;
-                            sums[column] += u16::from(pixels[at * size + offset]);
-                        }
-                    }
-                    let inside = &mut sums[inside_from..inside_to];
-                    if inside.is_empty() {
-                        continue;
-                    }
-                    let pixels = pixels[first..][..inside.len() * step * size].chunks_exact(step * size);
-                    for (sum, pixels) in inside.iter_mut().zip(pixels) {
-                        *sum += samples.iter().map(|dx| u16::from(pixels[dx * size + offset])).sum::<u16>();
-                    }
+                for dy in columns.samples {
+                    let y = (y + (row * step + dy) as i64).clamp(0, last_y) as usize;
+                    columns.add(frame.row(y), offset, sums);
                 }
-                let count = (SAMPLES * SAMPLES) as u16;
                 for (cell, sum) in cells.iter_mut().zip(sums.iter()) {
                     *cell = ((sum + count / 2) / count) as u8;
                 }
             }
+        }
+    }
+}
+
+/// Where the samples of a row of cells lie in a row of the frame.
+struct Columns<const SAMPLES: usize> {
+    region: SearchRegion,
+    /// Bytes of a pixel.
+    size: usize,
+    /// The frame's last column.
+    last_x: i64,
+    /// Pixels from a cell's left edge to each sample; the same hold from its top.
+    samples: [usize; SAMPLES],
+    /// Cells that lie in the frame; the others repeat its edge.
+    inside: Range<usize>,
+}
+
+impl<const SAMPLES: usize> Columns<SAMPLES> {
+    fn of(frame: &FrameView<'_>, region: SearchRegion) -> Self {
+        let SearchRegion { x, width, step, .. } = region;
+        let last_x = frame.width() as i64 - 1;
+        let cells_to = |pixels: i64| (pixels.max(0) as usize / step).min(width);
+        let from = cells_to(step as i64 - 1 - x);
+        Self {
+            region,
+            size: frame.format().bytes_per_pixel(),
+            last_x,
+            samples: std::array::from_fn(|i| (2 * i + 1) * step / (2 * SAMPLES)),
+            inside: from..cells_to(last_x + 1 - x).max(from),
+        }
+    }
+
+    /// Adds what the samples of a row of the frame have at `offset` of a pixel to the cells' sums.
+    fn add(&self, pixels: &[u8], offset: usize, sums: &mut [u16]) {
+        let Self { region: SearchRegion { x, step, .. }, size, inside, .. } = self;
+        for column in (0..inside.start).chain(inside.end..sums.len()) {
+            for dx in self.samples {
+                let at = (x + (column * step + dx) as i64).clamp(0, self.last_x) as usize;
+                sums[column] += u16::from(pixels[at * size + offset]);
+            }
+        }
+        if inside.is_empty() {
+            return;
+        }
+        let first = (x + (inside.start * step) as i64) as usize * size;
+        let cells = pixels[first..][..inside.len() * step * size].chunks_exact(step * size);
+        for (sum, cell) in sums[inside.clone()].iter_mut().zip(cells) {
+            *sum += self.samples.iter().map(|dx| u16::from(cell[dx * size + offset])).sum::<u16>();
         }
     }
 }
