@@ -219,7 +219,9 @@ def main():
     sequences = [(name, "part") for name in PEOPLE8] + [(name, "whole") for name in OTHER7]
     jobs = [(program, data, *sequence, seed) for sequence in sequences for seed in range(1, options.seeds + 1)]
     if options.crowd:
-        crowd = data_folder(options.crowd)
+        crowd = Path(options.crowd)
+        if not (crowd / "otb" / CROWD[0]).is_dir():
+            fail(f"--crowd {crowd}: no otb/{CROWD[0]} there: make it with `python3 bench/crowd.py {crowd}`")
         jobs += [(program, crowd, name, "part", seed) for name in CROWD for seed in range(1, options.seeds + 1)]
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         passes = list(pool.map(track, jobs))

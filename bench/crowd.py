@@ -64,7 +64,7 @@ def main():
     parser.add_argument("folder", metavar="FOLDER", type=Path, help="where the sequences go")
     parser.add_argument("--data", help="the folder that holds video/ and mot/ [default: INFOPART_DATA]")
     options = parser.parse_args()
-    data = data_folder(options.data)
+    data = data_folder(options.data, ["mot"])
     video, truth = data / "video/view1_vtest.avi", data / "mot/PETS09-S2L1/gt/gt.txt"
     for path in (video, truth):
         if not path.is_file():

@@ -68,7 +68,7 @@ def main():
     parser.add_argument("--infopart", default=PROJECT / "target/release/infopart", help="the program [default: target/release/infopart]")
     parser.add_argument("--data", help="the folder that holds video/ and mot/ [default: INFOPART_DATA]")
     options = parser.parse_args()
-    program, data = executable(options.infopart), data_folder(options.data)
+    program, data = executable(options.infopart), data_folder(options.data, ["mot"])
     video, truth = data / "video/view1_vtest.avi", data / "mot/PETS09-S2L1/gt/gt.txt"
     for path in (video, truth):
         if not path.is_file():

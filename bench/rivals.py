@@ -65,10 +65,12 @@ def load_numpy():
 # Input
 
 
-def data_folder(given):
+def data_folder(given, kinds=KINDS):
+    """The folder of the data, if it holds any of those kinds."""
     folder = Path(given or os.environ.get("INFOPART_DATA") or PROJECT.parent / "shared" / "data")
-    if not any((folder / kind).is_dir() for kind in KINDS):
-        fail(f"no sequences at {folder}: give the folder that holds otb/ and people/ with --data or INFOPART_DATA")
+    if not any((folder / kind).is_dir() for kind in kinds):
+        holds = " or ".join(f"{kind}/" for kind in kinds)
+        fail(f"no {holds} in {folder}: give the folder that holds it with --data or INFOPART_DATA")
     return folder
 
 

@@ -69,7 +69,7 @@ def main():
     options.mot = options.mot.resolve()
     if not os.access(options.mot, os.X_OK):
         fail(f"no program at {options.mot}: run `cargo build --release --workspace`, or give its path with --mot")
-    files = sorted(data_folder(options.data).glob("mot/*/det/det.txt"))
+    files = sorted(data_folder(options.data, ["mot"]).glob("mot/*/det/det.txt"))
     if not files:
         fail("no mot/SEQ/det/det.txt: give the folder that holds mot/ with --data")
     module = load_reference(options.reference)

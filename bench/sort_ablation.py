@@ -41,7 +41,7 @@ def main():
     add("--seeds", type=int, default=5, help="seeds of the particle filter, whose rows are means [default: 5]")
     options = parser.parse_args()
     frames = dict(given.split("=", 1) for given in options.frames)
-    folders = [path.parent.parent for path in sorted(data_folder(options.data).glob("mot/*/gt/gt.txt"))]
+    folders = [path.parent.parent for path in sorted(data_folder(options.data, ["mot"]).glob("mot/*/gt/gt.txt"))]
     if not folders:
         fail("no mot/SEQ/gt/gt.txt: give the folder that holds mot/ with --data")
     options.mot = options.mot.resolve()
