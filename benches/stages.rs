@@ -34,7 +34,7 @@ use rand::{Rng, RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 // The sizes of the default parameters.
-const PARTICLES: usize = 300;
+const PARTICLES: usize = 100;
 const POOL: usize = 150;
 const STUMPS: usize = 20;
 const TURNS: usize = 5;
@@ -44,7 +44,7 @@ const BOOSTING: BoostingOptions = BoostingOptions { rounds: STUMPS, balanced: tr
 const CELLS: usize = 32;
 const WINDOW: f64 = 4.0;
 const FILTER: FilterOptions =
-    FilterOptions { side: CELLS, label_sigma: 0.0625, temporal: 30.0, rounds: 2, support: 1.3 };
+    FilterOptions { side: CELLS, label_sigma: 0.0625, temporal: 20.0, rounds: 2, support: 1.0 };
 const SCALES: ScaleOptions = ScaleOptions { sizes: 17, ratio: 1.03, rate: 0.025 };
 
 /// Frames of the walker, and the person's box in each.
@@ -129,14 +129,14 @@ fn features(c: &mut Criterion) {
     });
     let integrals = &scene.integrals;
     let read_by_stumps = &scene.pool()[..STUMPS];
-    c.bench_function("Haar-like features, 20 x 300 boxes", |b| {
+    c.bench_function("Haar-like features, 20 x 100 boxes", |b| {
         b.iter(|| {
             let of = |hypothesis| read_by_stumps.iter().map(move |f| f.evaluate(integrals, hypothesis));
             hypotheses.iter().flat_map(of).sum::<f32>()
         });
     });
     let template = Hog::of(integrals, &hypotheses[0]);
-    c.bench_function("HOG and its distance, 300 boxes", |b| {
+    c.bench_function("HOG and its distance, 100 boxes", |b| {
         let distance = |hypothesis| Hog::of(integrals, hypothesis).squared_distance(&template);
         b.iter(|| hypotheses.iter().map(distance).sum::<f32>());
     });
@@ -149,22 +149,23 @@ fn correlation(c: &mut Criterion) {
     let mut integrals = BlockIntegrals::default();
     integrals.compute(&frame.view(), search_region(&full), 2);
     let mut grid = Grid::new(CELLS);
+    let own = vec![0.5; CELLS * CELLS];
     c.bench_function("grid of 32 x 32 cells", |b| {
-        b.iter(|| grid.describe(black_box(&integrals), window, 1.0));
+        b.iter(|| grid.describe(black_box(&integrals), window, &own));
     });
     let (width, height) = (full.w / window.side, full.h / window.side);
     let fresh = CorrelationFilter::new(FILTER, CHANNELS, width, height);
     c.bench_function("correlation, learning in the first frame", |b| {
         b.iter_batched_ref(
             || fresh.clone(),
-            |filter| filter.learn(black_box(grid.planes())),
+            |filter| filter.learn(black_box(grid.planes()), None),
             BatchSize::SmallInput,
         );
     });
     let mut filter = fresh.clone();
-    filter.learn(grid.planes());
+    filter.learn(grid.planes(), None);
     c.bench_function("correlation, learning in a later frame", |b| {
-        b.iter(|| filter.learn(black_box(grid.planes())));
+        b.iter(|| filter.learn(black_box(grid.planes()), None));
     });
     c.bench_function("correlation, response and its peak", |b| {
         b.iter(|| filter.respond(black_box(grid.planes()), window).peak());
@@ -174,7 +175,7 @@ fn correlation(c: &mut Criterion) {
         let mut reach = || rng.random_range(-full.w..full.w);
         (0..PARTICLES).map(|_| (window.x + reach(), window.y + reach())).collect()
     };
-    c.bench_function("correlation, response at 300 places", |b| {
+    c.bench_function("correlation, response at 100 places", |b| {
         b.iter(|| centres.iter().map(|&(x, y)| filter.response().at(x, y)).sum::<f32>());
     });
     let mut scale = ScaleFilter::new(SCALES, full.h / full.w);
@@ -190,12 +191,12 @@ fn likelihood(c: &mut Criterion) {
     let template = Hog::of(integrals, &integrals.to_region(scene.part));
     let mut classifier = StrongClassifier::default();
     GentleAdaBoost::new(BOOSTING).train(&memory(FIRST_SAMPLES, &mut rng()), &mut classifier);
-    c.bench_function("likelihood, 300 boxes, 1 thread", |b| {
+    c.bench_function("likelihood, 100 boxes, 1 thread", |b| {
         b.iter(|| {
             let of = |hypothesis: &BoxInRegion| {
                 let score = classifier.score(|k| pool[k].evaluate(integrals, hypothesis));
                 let distance = Hog::of(integrals, hypothesis).squared_distance(&template);
-                1.5 / (STUMPS as f32).sqrt() * score - 20.0 * distance
+                0.75 / (STUMPS as f32).sqrt() * score - 20.0 * distance
             };
             scene.hypotheses.iter().map(of).sum::<f32>()
         });
@@ -232,17 +233,17 @@ fn filtering(c: &mut Criterion) {
     let sum: f64 = raw.iter().sum();
     let weights: Vec<f64> = raw.iter().map(|weight| weight / sum).collect();
     for (name, scheme) in [
-        ("resampling, multinomial, 300 particles", Resampling::Multinomial),
-        ("resampling, stratified, 300 particles", Resampling::Stratified),
-        ("resampling, systematic, 300 particles", Resampling::Systematic),
-        ("resampling, residual, 300 particles", Resampling::Residual),
+        ("resampling, multinomial, 100 particles", Resampling::Multinomial),
+        ("resampling, stratified, 100 particles", Resampling::Stratified),
+        ("resampling, systematic, 100 particles", Resampling::Systematic),
+        ("resampling, residual, 100 particles", Resampling::Residual),
     ] {
         let (mut rng, mut ancestors) = (rng(), Vec::with_capacity(PARTICLES));
         c.bench_function(name, |b| b.iter(|| scheme.draw(black_box(&weights), &mut rng, &mut ancestors)));
     }
     let walk = RandomWalk::new(State::<3>::new(1.0, 1.0, 0.1));
     let start = ParticleFilter::new(vec![State::zeros(); PARTICLES], ParticleFilterOptions::default());
-    c.bench_function("particle filter, 300 particles, trivial likelihood", |b| {
+    c.bench_function("particle filter, 100 particles, trivial likelihood", |b| {
         let mut rng = rng();
         b.iter_batched_ref(
             || start.clone(),

@@ -3,7 +3,8 @@
 //!
 //! Over the cells x of a window and its channels c, the filter f minimises
 //!   || sum_c f_c * x_c - y ||^2 + mu || f - f_before ||^2,   f = 0 outside the target,
-//! y being a Gaussian at the target's centre.
+//! y being a Gaussian at the target's centre. "Inside" can leave out cells of the box that are not the target's own
+//! (Lukezic, Vojir, Cehovin Zajc, Matas, Kristan 2017).
 //!
 //! Steps of learning, by the alternating direction method of multipliers with an auxiliary filter g that vanishes outside
 //! the target, and scaled multipliers h:
@@ -50,7 +51,9 @@ pub struct CorrelationFilter {
     channels: Vec<Channel>,
     /// Spectrum of y.
     label: Vec<Complex32>,
-    /// 1 inside the target, 0 outside, between at its border.
+    /// 1 inside the target's box, 0 outside, between at its border.
+    in_box: Vec<f32>,
+    /// The same, less where cells are not the target's own.
     support: Vec<f32>,
     response: Response,
     learnt: bool,
@@ -95,7 +98,8 @@ impl CorrelationFilter {
             options,
             channels: vec![channel; channels],
             label,
-            support: support(side, width * options.support, height * options.support),
+            support: vec![1.0; side * side],
+            in_box: support(side, width * options.support, height * options.support),
             response: Response::new(side),
             learnt: false,
             own_answer: 1.0,
@@ -121,8 +125,13 @@ impl CorrelationFilter {
         &self.response
     }
 
-    /// Learns that the target is at the centre of a window, given by its planes of cells, one after another.
-    pub fn learn(&mut self, planes: &[f32]) {
+    /// Learns that the target is at the centre of a window, given by its planes of cells, one after another. `own`, if given, says
+    /// how much of each cell the filter may use, in [0, 1], row by row.
+    pub fn learn(&mut self, planes: &[f32], own: Option<&[f32]>) {
+        self.support.copy_from_slice(&self.in_box);
+        if let Some(own) = own {
+            self.support.iter_mut().zip(own).for_each(|(support, own)| *support *= own);
+        }
         self.transform(planes);
         self.solve();
         self.correlate(self.response.window());

@@ -6,7 +6,9 @@
 //! 2. gradients normalised by the energy of the cell's four blocks of 2 x 2 cells and clipped at 0.2: 8 numbers and 4 energies
 //!    (Felzenszwalb, Girshick, McAllester, Ramanan 2010),
 //! 3. luminance and two colour differences, without the window's mean,
-//! 4. gradients and colours each scaled to a mean square of 1, and all tapered towards the window's border.
+//! 4. how likely each cell is the target's own (handed in), without the window's mean,
+//! 5. gradients, colours and the last each scaled to a mean square of their own, and all tapered towards the window's
+//!    border.
 
 use crate::features::{
     blocks::{BlockIntegrals, LANES},
@@ -18,8 +20,10 @@ use super::{lattice::Lattice, window::Window};
 const BLOCKS: usize = 4;
 /// Numbers a cell has for its gradients.
 pub const GRADIENTS: usize = BINS + BLOCKS;
+/// Numbers a cell has for its gradients and colours.
+const APPEARANCE: usize = GRADIENTS + 3;
 /// Numbers a cell has.
-pub const CHANNELS: usize = GRADIENTS + 3;
+pub const CHANNELS: usize = APPEARANCE + 1;
 const CLIP: f32 = 0.2;
 
 /// Cells of a window, a plane a channel.
@@ -60,17 +64,19 @@ impl Grid {
         &self.planes
     }
 
-    /// Describes a window of the frame (steps 1 to 4).
-    pub fn describe(&mut self, integrals: &BlockIntegrals, window: Window, colour: f32) {
+    /// Describes a window of the frame (steps 1 to 5); `own` is how likely each cell is the target's own, row by row.
+    pub fn describe(&mut self, integrals: &BlockIntegrals, window: Window, own: &[f32]) {
         let area = self.side * self.side;
         self.collect(integrals, window);
         self.normalise();
+        self.planes[APPEARANCE * area..].copy_from_slice(own);
         for plane in self.planes[GRADIENTS * area..].chunks_exact_mut(area) {
             let mean = plane.iter().sum::<f32>() / area as f32;
             plane.iter_mut().for_each(|value| *value -= mean);
         }
         scale_to(&mut self.planes[..GRADIENTS * area], 1.0);
-        scale_to(&mut self.planes[GRADIENTS * area..], colour);
+        scale_to(&mut self.planes[GRADIENTS * area..APPEARANCE * area], 1.0);
+        scale_to(&mut self.planes[APPEARANCE * area..], 1.0);
         for plane in self.planes.chunks_exact_mut(area) {
             plane.iter_mut().zip(&self.taper).for_each(|(value, taper)| *value *= taper);
         }
@@ -198,24 +204,30 @@ mod tests {
         let frame = reference::textured_frame(40, 40, PixelFormat::Rgb);
         let integrals = integrals(&frame);
         let mut grid = Grid::new(SIDE);
-        grid.describe(&integrals, Window { x: 500.0, y: -300.0, side: 32.0 }, 1.0);
+        let own = [0.5; SIDE * SIDE];
+        grid.describe(&integrals, Window { x: 500.0, y: -300.0, side: 32.0 }, &own);
         assert!(grid.planes().iter().all(|value| *value == 0.0));
-        grid.describe(&integrals, Window { x: 35.0, y: 20.0, side: 60.0 }, 1.0);
+        grid.describe(&integrals, Window { x: 35.0, y: 20.0, side: 60.0 }, &own);
         assert!(grid.planes().iter().all(|value| value.is_finite()));
         assert!(grid.planes().iter().any(|value| *value != 0.0));
     }
 
     #[test]
-    fn gradients_and_colours_have_the_share_that_is_asked_for() {
+    fn gradients_colours_and_what_is_its_own_weigh_the_same_and_the_last_is_the_one_handed_in() {
         let frame = reference::textured_frame(40, 40, PixelFormat::Rgb);
-        let energy = |colour: f32| {
-            let mut grid = Grid::new(SIDE);
-            grid.describe(&integrals(&frame), Window { x: 20.0, y: 20.0, side: 30.0 }, colour);
-            let (gradients, colours) = grid.planes().split_at(GRADIENTS * SIDE * SIDE);
-            let of = |planes: &[f32]| planes.iter().map(|v| v * v).sum::<f32>();
-            (of(gradients), of(colours))
-        };
-        let ((gradients, once), (same, twice)) = (energy(1.0), energy(2.0));
-        assert!((gradients - same).abs() < 1e-3 * gradients && (twice - 4.0 * once).abs() < 1e-3 * twice);
+        let area = SIDE * SIDE;
+        let own: Vec<f32> = (0..area).map(|i| if i == 3 * SIDE + 4 { 0.9 } else { 0.1 }).collect();
+        let mut grid = Grid::new(SIDE);
+        grid.taper.fill(1.0);
+        grid.describe(&integrals(&frame), Window { x: 20.0, y: 20.0, side: 30.0 }, &own);
+        let mean_square = |planes: &[f32]| planes.iter().map(|v| v * v).sum::<f32>() / planes.len() as f32;
+        let (gradients, rest) = grid.planes().split_at(GRADIENTS * area);
+        let (colours, last) = rest.split_at(3 * area);
+        for planes in [gradients, colours, last] {
+            assert!((mean_square(planes) - 1.0).abs() < 1e-3);
+        }
+        let best = (0..area).max_by(|a, b| last[*a].total_cmp(&last[*b])).unwrap();
+        assert_eq!(best, 3 * SIDE + 4);
+        assert!(last.iter().sum::<f32>().abs() < 1e-3);
     }
 }

@@ -3,6 +3,8 @@
 pub mod blocks;
 mod cells;
 pub mod colour_histogram;
+/// Which pixels around a box are likely its own, by their colours.
+pub mod foreground;
 mod gradient;
 pub mod haar;
 pub mod hog;

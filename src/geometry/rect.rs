@@ -78,6 +78,12 @@ impl Rect {
         (w > 0.0 && h > 0.0).then_some(Self { x, y, w, h })
     }
 
+    /// The smallest box that holds both.
+    pub fn union(&self, other: &Self) -> Self {
+        let (x, y) = (self.x.min(other.x), self.y.min(other.y));
+        Self::new(x, y, self.right().max(other.right()) - x, self.bottom().max(other.bottom()) - y)
+    }
+
     /// The box moved by (`dx`, `dy`) pixels.
     pub fn translated(&self, dx: f64, dy: f64) -> Self {
         Self { x: self.x + dx, y: self.y + dy, ..*self }

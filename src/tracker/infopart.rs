@@ -2,39 +2,44 @@
 //!
 //! Steps:
 //! 1. in the first frame, set up n particle sets on the part of the box that changes least,
-//! 2. sample the part and its surroundings (Algorithm 5), train the classifier F (Algorithm 4), and let the correlation
-//!    filter learn,
+//! 2. sample the part and its surroundings (Algorithm 5), train the classifier F (Algorithm 4), and let the other cues
+//!    learn,
 //! 3. in each later frame:
-//!    a. correlate, move the particles by the walk or to the filter's peak (and meanwhile look at the sizes there), compute
-//!    integral images of what they cover, weigh and resample them (Algorithm 1),
+//!    a. look over the window around the target, move the particles by the walk or to where the cues answer (and meanwhile
+//!    look at the sizes there), compute integral images of what they cover, weigh and resample them (Algorithm 1),
 //!    b. estimate the part from the sets and recover the whole box from it,
 //!    c. judge the estimate,
-//!    d. if it is due and the estimate is trusted, sample the new part and retrain F,
-//!    e. likewise let the filter learn.
+//!    d. if it is due and the estimate is trusted, sample the new part, its surroundings and the other places that the cues
+//!    answer to, and retrain F,
+//!    e. likewise let the cues over the window learn.
 //!
-//! The correlation filter is the step that the paper names as its next; without it (weight 0) all else is as printed.
+//! The correlation filter is the step that the paper names as its next; without the cues over the window (weight 0) all else is
+//! as printed.
 
 use std::sync::Arc;
 
 use crate::{
-    bayes::particle::{ParticleEstimate, ParticleFilter, ParticleFilterOptions},
+    bayes::{
+        Observation,
+        particle::{ParticleEstimate, ParticleFilter, ParticleFilterOptions},
+    },
     features::{
         haar::HaarFeature,
         hog::Hog,
         region::{CHANNELS, RegionIntegrals, SearchRegion},
     },
     frame::{FrameStamp, FrameView, PixelFormat},
-    geometry::Rect,
+    geometry::{Rect, Region},
 };
 use rand::RngExt;
 
 use super::{
     TrackError, Tracker,
-    appearance::{Appearance, Fit, FrameObservation},
     confidence::{Belief, Judge, status},
+    cues::{Cues, Fit, Lesson},
     estimate::{BoxWarning, Estimate, Evidence, StageTime, Status, WeightedBox},
     first_box,
-    locator::Locator,
+    learning_gate::LearningGate,
     motion::{Limits, PartState, PartWalk, box_of, state_of},
     parameters::CheckedParameters,
     proposal::PeakProposal,
@@ -48,6 +53,9 @@ const MAX_REGION_CELLS: f64 = 1_048_576.0;
 
 /// Cells along a side of a search region at most.
 const MAX_REGION_SIDE: f64 = 16_384.0;
+
+/// Places that the cues answer to are others if they overlap the target by less than this.
+const OTHERS_OVERLAP: f64 = 0.4;
 
 /// The InfoPart tracker.
 pub struct InfoPart {
@@ -67,13 +75,15 @@ struct Target {
     /// Frames since `init`.
     frame: u64,
     sets: Vec<ParticleFilter<3>>,
-    appearance: Appearance,
+    cues: Cues,
     estimate: Estimate,
-    /// How probable the last frame alone made its estimate, in (0, 1).
-    trust: f64,
+    /// Whether the last frame's estimate may be learnt.
+    learnable: bool,
     judge: Judge,
+    gate: LearningGate,
     set_estimates: Vec<ParticleEstimate<3>>,
-    locator: Option<Locator>,
+    /// Scratch: parts where the cues answer and the target is not.
+    others: Vec<Rect>,
 }
 
 impl InfoPart {
@@ -111,25 +121,13 @@ impl InfoPart {
         self.stopwatch.start();
         let parameters = &self.parameters;
         let part = parameters.region.part_from_full(box_in_frame);
-        let mut locator =
-            (parameters.correlation_weight > 0.0).then(|| Locator::new(parameters, box_in_frame));
         let field = Sampler::new(parameters).field(&part);
         self.integrals.compute(&frame, search_region(field, &part, parameters.max_part_cells));
         self.stopwatch.lap("integral images");
-        if let Some(locator) = &mut locator {
-            locator.see(&frame, part);
-            self.stopwatch.lap("integral images of blocks");
-        }
-        let mut target = Target::new(parameters, &frame, &self.integrals, box_in_frame, part, locator);
-        target.appearance.learn(
-            &self.integrals,
-            &part,
-            (parameters.first_targets, parameters.first_backgrounds),
-            &mut stream(parameters.seed, 0, Use::Samples),
-        );
-        if let Some(locator) = &mut target.locator {
-            locator.learn(part);
-        }
+        let mut target = Target::new(parameters, &frame, &self.integrals, box_in_frame, part);
+        target.cues.see(&frame, box_in_frame);
+        self.stopwatch.lap("window");
+        target.learn_first(parameters, &frame, &self.integrals);
         self.stopwatch.lap("learning");
         self.target = Some(target);
     }
@@ -141,12 +139,12 @@ impl InfoPart {
         let parameters = &self.parameters;
         self.stopwatch.start();
         target.frame += 1;
-        let part = target.estimate.part_in_frame;
-        if let Some(locator) = &mut target.locator {
-            locator.see(&frame, part);
-            self.stopwatch.lap("integral images of blocks");
-            locator.look(part);
-            self.stopwatch.lap("correlation");
+        let (part, full) = (target.estimate.part_in_frame, target.estimate.box_in_frame);
+        if target.cues.look_over_window() {
+            target.cues.see(&frame, full);
+            self.stopwatch.lap("window");
+            target.cues.look(&full);
+            self.stopwatch.lap("look");
         }
         target.predict(parameters);
         self.stopwatch.lap("prediction");
@@ -169,7 +167,6 @@ impl Target {
         integrals: &RegionIntegrals,
         box_in_frame: Rect,
         part: Rect,
-        locator: Option<Locator>,
     ) -> Self {
         let template = integrals.to_region(part);
         let channels = if frame.format() == PixelFormat::Gray { 1 } else { CHANNELS };
@@ -188,12 +185,13 @@ impl Target {
             limits: Limits::around(&part, frame.width(), frame.height()),
             frame: 0,
             sets: (0..parameters.particle_sets).map(|set| particle_set(parameters, &part, set)).collect(),
-            appearance: Appearance::new(parameters, pool, Hog::of(integrals, &template)),
+            cues: Cues::new(parameters, pool, Hog::of(integrals, &template), box_in_frame),
             estimate,
-            trust: 1.0,
+            learnable: true,
             judge: Judge::default(),
+            gate: LearningGate::new(parameters),
             set_estimates: Vec::with_capacity(parameters.particle_sets),
-            locator,
+            others: Vec::new(),
         }
     }
 
@@ -219,14 +217,15 @@ impl Target {
             about_centre: parameters.scale_about_centre,
             limits: self.limits,
         };
-        let proposal =
-            self.locator.as_ref().filter(|_| parameters.peak_share > 0.0).map(|locator| PeakProposal {
-                walk,
-                peak: locator.peak_of_part(part),
-                spread: parameters.peak_spread * part.area().sqrt(),
-                share: parameters.peak_share,
-            });
-        let Self { sets, frame, locator, .. } = self;
+        let full = self.estimate.box_in_frame;
+        let found = self.cues.found(&full).filter(|_| parameters.peak_share > 0.0);
+        let proposal = found.map(|found| PeakProposal {
+            walk,
+            peak: parameters.region.part_from_full(found).centre(),
+            spread: parameters.peak_spread * part.area().sqrt(),
+            share: parameters.peak_share,
+        });
+        let Self { sets, frame, cues, .. } = self;
         let mut move_particles = || {
             for (set, particles) in sets.iter_mut().enumerate() {
                 let mut rng = stream(parameters.seed, *frame, Use::Particles(set));
@@ -236,11 +235,10 @@ impl Target {
                 }
             }
         };
-        match locator {
-            Some(locator) => {
-                rayon::join(move_particles, || locator.look_at_sizes(part));
-            }
-            None => move_particles(),
+        if cues.look_over_window() {
+            rayon::join(move_particles, || cues.look_closer(&full));
+        } else {
+            move_particles();
         }
     }
 
@@ -261,17 +259,12 @@ impl Target {
 
     /// Step 3a, correction, and 3b: the sets' means weighted by their mean likelihoods.
     fn correct(&mut self, parameters: &CheckedParameters, integrals: &RegionIntegrals) {
-        let seed = parameters.seed;
-        let observation = FrameObservation {
-            integrals,
-            appearance: &self.appearance,
-            aspect: self.aspect,
-            locator: self.locator.as_ref(),
-        };
+        let observation =
+            FrameObservation { integrals, cues: &self.cues, aspect: self.aspect, region: parameters.region };
         self.set_estimates.clear();
         for (set, particles) in self.sets.iter_mut().enumerate() {
             // Past the prediction's draws: the frame's second half of the stream numbers.
-            let mut rng = stream(seed, self.frame | 1 << 40, Use::Particles(set));
+            let mut rng = stream(parameters.seed, self.frame | 1 << 40, Use::Particles(set));
             self.set_estimates.push(particles.correct(&observation, &mut rng));
         }
     }
@@ -280,35 +273,40 @@ impl Target {
     fn judge(&mut self, parameters: &CheckedParameters, integrals: &RegionIntegrals) -> Fit {
         let (mean, covariance) = merge(&self.set_estimates);
         let part = box_of(&mean, self.aspect);
-        let fit = self.appearance.fit(integrals, &integrals.to_region(part));
+        let full = parameters.region.full_from_part(part);
+        let fit = self.cues.fit(&self.cues.hypothesis(integrals, part, full));
         let mut evidence = Evidence {
             mean_stump: f64::from(fit.score) / parameters.stumps as f64,
             hog_distance: f64::from(fit.hog_distance),
-            peak_sharpness: self.locator.as_ref().map(Locator::sharpness),
+            peak_sharpness: self.cues.peak_sharpness(),
             lowest_log_odds: None,
         };
         let Belief { of_frame, confidence } = self.judge.believe(&mut evidence);
-        self.trust = of_frame;
-        let full = parameters.region.full_from_part(part);
+        self.learnable = self.gate.opens(of_frame, fit.response);
         self.estimate = Estimate::new(full, part, confidence, status(confidence));
         self.estimate.effective_sample_size =
             self.set_estimates.iter().map(|set| set.effective_sample_size).sum();
         self.estimate.covariance = covariance;
         self.estimate.evidence = Some(evidence);
+        self.cues.credit(&full);
         fit
     }
 
-    /// Step 3d.
-    fn update_is_due(&self, parameters: &CheckedParameters, fit: &Fit) -> bool {
-        self.frame.is_multiple_of(parameters.update_interval as u64)
-            && f64::from(fit.score) > parameters.update_score
-            && self.trust > parameters.update_confidence
-    }
-
-    /// Step 3e.
-    fn learning_is_due(&self, parameters: &CheckedParameters) -> bool {
-        self.frame.is_multiple_of(parameters.correlation_interval as u64)
-            && self.trust > parameters.update_confidence
+    /// Step 2.
+    fn learn_first(
+        &mut self,
+        parameters: &CheckedParameters,
+        frame: &FrameView<'_>,
+        integrals: &RegionIntegrals,
+    ) {
+        let Estimate { part_in_frame: part, box_in_frame: full, .. } = self.estimate;
+        let (mut of_part, of_window) = self.cues.split();
+        let counts = (parameters.first_targets, parameters.first_backgrounds);
+        let lesson = Lesson { integrals, part, others: &[], counts };
+        of_part.learn(&lesson, &mut stream(parameters.seed, 0, Use::Samples));
+        if let Some(mut of_window) = of_window {
+            of_window.learn(frame, full);
+        }
     }
 
     /// Steps 3d and 3e, side by side.
@@ -319,35 +317,64 @@ impl Target {
         integrals: &mut RegionIntegrals,
         fit: &Fit,
     ) {
-        let (train, correlate) = (self.update_is_due(parameters, fit), self.learning_is_due(parameters));
-        let Self { appearance, locator, estimate, frame: number, .. } = self;
-        let part = estimate.part_in_frame;
-        // Without the filters samples are taken where the particles are, as printed.
-        let cover_samples = locator.is_some();
+        let is_due = |interval: usize| self.learnable && self.frame.is_multiple_of(interval as u64);
+        let train = is_due(parameters.update_interval) && f64::from(fit.score) > parameters.update_score;
+        let correlate = is_due(parameters.correlation_interval);
+        if train {
+            self.find_others(parameters);
+        }
+        let Self { cues, estimate, frame: number, others, .. } = self;
+        let Estimate { part_in_frame: part, box_in_frame: full, .. } = *estimate;
+        // Without the window's cues samples are taken where the particles are, as printed.
+        let cover_samples = cues.look_over_window();
+        let (mut of_part, of_window) = cues.split();
         rayon::join(
             || {
                 if !train {
                     return;
                 }
                 if cover_samples {
-                    let field = Sampler::new(parameters).field(&part);
+                    let field = others.iter().fold(Sampler::new(parameters).field(&part), |field, other| {
+                        field.union(&Sampler::field_of_other(other))
+                    });
                     integrals.compute(frame, search_region(field, &part, parameters.max_part_cells));
                 }
-                appearance.age_template(integrals, part);
+                of_part.age_template(integrals, part);
                 let counts = (parameters.targets, parameters.backgrounds);
-                appearance.learn(
-                    integrals,
-                    &part,
-                    counts,
-                    &mut stream(parameters.seed, *number, Use::Samples),
-                );
+                let lesson = Lesson { integrals, part, others, counts };
+                of_part.learn(&lesson, &mut stream(parameters.seed, *number, Use::Samples));
             },
             || {
-                if let Some(locator) = locator.as_mut().filter(|_| correlate) {
-                    locator.learn(part);
+                if let Some(mut of_window) = of_window.filter(|_| correlate) {
+                    of_window.learn(frame, full);
                 }
             },
         );
+    }
+
+    /// The parts where the window's cues answer and the target is not.
+    fn find_others(&mut self, parameters: &CheckedParameters) {
+        let Self { cues, others, estimate, .. } = self;
+        let elsewhere = cues.answered_elsewhere(estimate.box_in_frame, OTHERS_OVERLAP);
+        others.clear();
+        others.extend(elsewhere.map(|full| parameters.region.part_from_full(full)));
+    }
+}
+
+/// A frame as an observation of the part's state.
+struct FrameObservation<'a> {
+    integrals: &'a RegionIntegrals,
+    cues: &'a Cues,
+    /// h / w of the part.
+    aspect: f64,
+    region: Region,
+}
+
+impl Observation<3> for FrameObservation<'_> {
+    fn log_likelihood(&self, state: &PartState) -> f64 {
+        let part = box_of(state, self.aspect);
+        let full = self.region.full_from_part(part);
+        self.cues.log_likelihood(&self.cues.hypothesis(self.integrals, part, full))
     }
 }
 
@@ -425,5 +452,44 @@ impl Tracker for InfoPart {
 
     fn stage_times(&self) -> &[StageTime] {
         self.stopwatch.times()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn set(mean: [f64; 3], variance: f64, log_evidence: f64) -> ParticleEstimate<3> {
+        ParticleEstimate {
+            mean: PartState::from(mean),
+            covariance: nalgebra::Matrix3::identity() * variance,
+            effective_sample_size: 1.0,
+            log_evidence,
+            resampled: false,
+        }
+    }
+
+    #[test]
+    fn sets_merge_by_their_evidence_and_their_disagreement_is_part_of_the_covariance() {
+        let (a, b) = (set([0.0, 0.0, 10.0], 1.0, 0.0), set([8.0, 0.0, 14.0], 3.0, 3f64.ln()));
+        let (mean, covariance) = merge(&[a, b]);
+        // Weights 1/4 and 3/4.
+        assert!((mean - PartState::new(6.0, 0.0, 13.0)).norm() < 1e-12);
+        let between = 0.25 * 0.75;
+        let expected = [
+            [2.5 + between * 64.0, 0.0, between * 32.0],
+            [0.0, 2.5, 0.0],
+            [between * 32.0, 0.0, 2.5 + between * 16.0],
+        ];
+        for (found, expected) in covariance.as_flattened().iter().zip(expected.as_flattened()) {
+            assert!((found - expected).abs() < 1e-12, "{covariance:?}");
+        }
+    }
+
+    #[test]
+    fn sets_without_any_evidence_count_alike() {
+        let none = f64::NEG_INFINITY;
+        let (mean, _) = merge(&[set([0.0; 3], 1.0, none), set([4.0; 3], 1.0, none)]);
+        assert_eq!(mean, PartState::new(2.0, 2.0, 2.0));
     }
 }

@@ -1,18 +1,20 @@
 //! Trackers: the trait every one of them stands behind, InfoPart, and the colour-histogram particle filter.
 
-mod appearance;
 pub mod colour;
 mod confidence;
+mod cues;
 mod estimate;
+mod evidence_map;
 mod first_box;
 mod infopart;
-mod locator;
+mod learning_gate;
 mod motion;
 mod parameters;
 mod proposal;
 mod sampling;
 mod stopwatch;
 mod streams;
+mod window_view;
 
 use thiserror::Error;
 

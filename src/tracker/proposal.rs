@@ -52,3 +52,43 @@ fn log_sum(a: f64, b: f64) -> f64 {
     let most = a.max(b);
     if most == f64::NEG_INFINITY { most } else { most + ((a - most).exp() + (b - most).exp()).ln() }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tracker::motion::Limits;
+    use rand::SeedableRng;
+    use rand_chacha::ChaCha8Rng;
+
+    const START: [f64; 3] = [100.0, 100.0, 20.0];
+
+    /// The peak is far from where the walk leads.
+    fn proposal(share: f64) -> PeakProposal {
+        let limits = Limits { frame_width: 1e4, frame_height: 1e4, narrowest: 1.0, widest: 1e3 };
+        let sigma = PartState::new(3.0, 3.0, 0.5);
+        let walk = PartWalk { aspect: 2.0, sigma, about_centre: true, limits };
+        PeakProposal { walk, peak: (400.0, 300.0), spread: 2.0, share }
+    }
+
+    #[test]
+    fn the_share_is_of_draws_around_the_peak() {
+        for share in [0.0, 0.2, 0.9] {
+            let proposal = proposal(share);
+            let mut rng = ChaCha8Rng::seed_from_u64(3);
+            let draws = 5000;
+            let at_peak =
+                (0..draws).filter(|_| proposal.sample(&PartState::from(START), &mut rng)[0] > 300.0).count();
+            assert!((at_peak as f64 / f64::from(draws) - share).abs() < 0.03, "{share}: {at_peak}");
+        }
+    }
+
+    #[test]
+    fn the_density_has_the_same_shares() {
+        let (proposal, start) = (proposal(0.2), PartState::from(START));
+        let at_peak = PartState::new(390.0, 280.0, 20.0);
+        let around = 1.0 / (TAU * 4.0) / (TAU.sqrt() * 0.5);
+        assert!((proposal.log_density(&at_peak, &start) - (0.2 * around).ln()).abs() < 1e-9);
+        let walked = 1.0 / (TAU * 9.0) / (TAU.sqrt() * 0.5);
+        assert!((proposal.log_density(&start, &start) - (0.8 * walked).ln()).abs() < 1e-9);
+    }
+}

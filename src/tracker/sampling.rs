@@ -3,7 +3,8 @@
 //! Steps:
 //! 1. the target's own box,
 //! 2. N+ - 1 boxes of the same size near it,
-//! 3. N- boxes of the same size that hold little of it. The legs of a person may be among them: they are not the part.
+//! 3. N- boxes of the same size that hold little of it. The legs of a person may be among them: they are not the part,
+//! 4. hard negatives: boxes at and about the places that other cues answer to.
 
 use rand::{Rng, RngExt};
 
@@ -13,6 +14,8 @@ use super::parameters::Parameters;
 
 /// Tries to find a background box before an overlapping one is given up.
 const TRIES: usize = 50;
+/// How far hard negatives lie from such a place along each axis at most, pixels.
+const OTHER_JITTER: f64 = 2.0;
 
 /// How boxes are drawn around a target.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -21,6 +24,8 @@ pub(super) struct Sampler {
     jitter_share: f64,
     reach: f64,
     overlap: f64,
+    /// Samples of each place that looks like the target and is not.
+    per_other: usize,
 }
 
 impl Sampler {
@@ -30,6 +35,7 @@ impl Sampler {
             jitter_share: parameters.target_jitter_share,
             reach: parameters.background_reach,
             overlap: parameters.background_overlap,
+            per_other: parameters.hard_negatives,
         }
     }
 
@@ -68,6 +74,33 @@ impl Sampler {
                 }
             }
         }
+    }
+
+    /// Draws a few boxes about each of `others`, boxes of the part's size, that overlap the part by no more than backgrounds
+    /// may, and hands them to `sample`.
+    pub fn draw_others<R: Rng + ?Sized>(
+        &self,
+        part: &Rect,
+        others: &[Rect],
+        rng: &mut R,
+        mut sample: impl FnMut(&Rect),
+    ) {
+        for other in others {
+            for i in 0..self.per_other {
+                let mut within = || rng.random_range(-OTHER_JITTER..=OTHER_JITTER);
+                let (dx, dy) = if i == 0 { (0.0, 0.0) } else { (within(), within()) };
+                let candidate = other.translated(dx, dy);
+                if candidate.overlap(part) <= self.overlap {
+                    sample(&candidate);
+                }
+            }
+        }
+    }
+
+    /// What [`draw_others`](Self::draw_others) may take of such a box.
+    pub fn field_of_other(other: &Rect) -> Rect {
+        let (x, y) = (other.x - OTHER_JITTER, other.y - OTHER_JITTER);
+        Rect::new(x, y, other.w + 2.0 * OTHER_JITTER, other.h + 2.0 * OTHER_JITTER)
     }
 
     fn background_reach(&self, part: &Rect) -> (f64, f64) {

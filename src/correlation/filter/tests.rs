@@ -33,7 +33,7 @@ fn rolled(planes: &[f32], right: usize, down: usize) -> Vec<f32> {
 fn what_was_learnt_answers_one_at_its_own_place() {
     let planes = noise(3, 1);
     let mut filter = CorrelationFilter::new(options(), 3, 0.3, 0.5);
-    filter.learn(&planes);
+    filter.learn(&planes, None);
     let peak = filter.respond(&planes, window()).peak();
     assert!((peak.value - 1.0).abs() < 0.02, "{peak:?}");
     assert!((peak.x - 100.0).abs() < 0.5 && (peak.y - 60.0).abs() < 0.5, "{peak:?}");
@@ -43,7 +43,7 @@ fn what_was_learnt_answers_one_at_its_own_place() {
 fn the_peak_moves_as_the_target_does() {
     let planes = noise(3, 2);
     let mut filter = CorrelationFilter::new(options(), 3, 0.3, 0.5);
-    filter.learn(&planes);
+    filter.learn(&planes, None);
     for (right, down) in [(3, 0), (0, 2), (SIDE - 4, SIDE - 1)] {
         let peak = filter.respond(&rolled(&planes, right, down), window()).peak();
         let signed = |cells: usize| if cells > SIDE / 2 { cells as f64 - SIDE as f64 } else { cells as f64 };
@@ -56,7 +56,7 @@ fn the_peak_moves_as_the_target_does() {
 #[test]
 fn the_filter_vanishes_outside_the_target() {
     let mut filter = CorrelationFilter::new(options(), 2, 0.25, 0.25);
-    filter.learn(&noise(2, 3));
+    filter.learn(&noise(2, 3), None);
     let mut image = vec![0.0; SIDE * SIDE];
     for channel in &filter.channels {
         filter.fourier.inverse(&channel.filter, &mut image, &mut filter.scratch);
@@ -70,12 +70,28 @@ fn the_filter_vanishes_outside_the_target() {
     }
 }
 
+#[test]
+fn cells_that_are_not_the_targets_own_hold_nothing_of_the_filter() {
+    let own: Vec<f32> = (0..SIDE * SIDE).map(|i| if i % SIDE < SIDE / 2 { 0.0 } else { 1.0 }).collect();
+    let mut filter = CorrelationFilter::new(options(), 2, 0.5, 0.5);
+    filter.learn(&noise(2, 3), Some(&own));
+    let mut image = vec![0.0; SIDE * SIDE];
+    for channel in &filter.channels {
+        filter.fourier.inverse(&channel.filter, &mut image, &mut filter.scratch);
+        let half = |right: bool| {
+            let cells = image.iter().enumerate().filter(move |(i, _)| (i % SIDE >= SIDE / 2) == right);
+            cells.map(|(_, value)| value.abs()).fold(0.0, f32::max)
+        };
+        assert!(half(false) < 1e-6 && half(true) > 1e-4);
+    }
+}
+
 /// With support everywhere and one round, f minimises the objective with the penalty rho ||f||^2: its gradient is zero.
 #[test]
 fn the_closed_form_solves_each_frequencys_linear_system() {
     let whole = FilterOptions { rounds: 1, support: 100.0, ..options() };
     let mut filter = CorrelationFilter::new(whole, 3, 1.0, 1.0);
-    filter.learn(&noise(3, 4));
+    filter.learn(&noise(3, 4), None);
     let area = (SIDE * SIDE) as f32;
     for k in 0..filter.label.len() {
         let projected: Complex32 =
@@ -91,10 +107,10 @@ fn the_closed_form_solves_each_frequencys_linear_system() {
 fn a_stiffer_filter_stays_nearer_to_the_one_before() {
     let distance = |temporal: f32| {
         let mut filter = CorrelationFilter::new(FilterOptions { temporal, ..options() }, 2, 0.3, 0.5);
-        filter.learn(&noise(2, 5));
+        filter.learn(&noise(2, 5), None);
         let before: Vec<Vec<Complex32>> =
             filter.channels.iter().map(|channel| channel.filter.clone()).collect();
-        filter.learn(&noise(2, 6));
+        filter.learn(&noise(2, 6), None);
         let squared = |(channel, before): (&Channel, &Vec<Complex32>)| {
             channel.filter.iter().zip(before).map(|(a, b)| (a - b).norm_sqr()).sum::<f32>()
         };
@@ -107,6 +123,6 @@ fn a_stiffer_filter_stays_nearer_to_the_one_before() {
 fn flat_planes_are_learnt_without_a_number_that_is_none() {
     let mut filter = CorrelationFilter::new(options(), 2, 0.3, 0.5);
     let flat = vec![0.0; 2 * SIDE * SIDE];
-    filter.learn(&flat);
+    filter.learn(&flat, None);
     assert!(filter.respond(&flat, window()).values().iter().all(|value| value.is_finite()));
 }

@@ -102,7 +102,7 @@ parameters! {
     region: Region = Region::Part, "part, whole or the upper fraction in (0, 1]",
         "What is tracked of the box, from its top edge down. `part` is head and torso of a person, the upper 5/8.";
 
-    particles: usize = 300, [1, 100_000], "particles",
+    particles: usize = 100, [1, 100_000], "particles",
         "N_s: particles, all sets together.";
     particle_sets: usize = 1, [1, 32], "sets",
         "n: independent particle sets that share the particles; their means are weighted by mean likelihood.";
@@ -131,7 +131,7 @@ parameters! {
         "Haar-like features that the stumps choose from, drawn at random from all masks, sizes and positions.";
     boosting_turns: usize = 5, [1, 100], "rounds",
         "Each round of training searches this fraction of the features, in turns; 1 searches all of them.";
-    score_weight: f64 = 1.5, [0.0, 1000.0], "per unit of score",
+    score_weight: f64 = 0.75, [0.0, 1000.0], "per unit of score",
         "alpha: weight of the classifier's score in the exponent of the likelihood.";
     score_per_root_stump: bool = true, "true or false",
         "Whether the score is divided by sqrt(s) in the exponent.";
@@ -144,24 +144,30 @@ parameters! {
 
     correlation_weight: f64 = 40.0, [0.0, 1000.0], "per unit of response",
         "beta: weight of the correlation filter's response in the exponent of the likelihood; 0 leaves the filter out.";
-    correlation_region: Region = Region::Whole, "part, whole or the upper fraction in (0, 1]",
-        "What the filter looks at of the box, from its top edge down, whatever is tracked.";
-    correlation_window: f64 = 4.0, [1.0, 10.0], "sqrt(w h) of what the filter looks at",
+    correlation_window: f64 = 4.0, [1.0, 10.0], "sqrt(w h) of the whole box",
         "Side of the square window that is searched.";
     correlation_cells: usize = 32, [8, 128], "cells",
         "Cells along the window's side; an odd number is rounded up.";
-    correlation_label_sigma: f64 = 0.0625, [0.001, 1.0], "sqrt(w h) of what the filter looks at",
+    correlation_label_sigma: f64 = 0.0625, [0.001, 1.0], "sqrt(w h) of the whole box",
         "Standard deviation of the response that the filter is to give.";
-    correlation_support: f64 = 1.3, [0.1, 10.0], "share of w and h of what the filter looks at",
-        "The filter is zero farther from the centre than this.";
-    correlation_temporal: f64 = 30.0, [0.0, 1e6], "penalty",
+    correlation_filters: usize = 2, [1, 2], "filters",
+        "The first filter looks at the target's own cells, the second, if there is one, at its surroundings too.";
+    correlation_support: f64 = 1.0, [0.1, 10.0], "share of w and h of the whole box",
+        "The first filter is zero farther from the centre than this.";
+    correlation_own_cells: bool = true, "true or false",
+        "Whether the first filter learns little of cells that are not the target's own by their colour.";
+    correlation_surroundings: f64 = 1.3, [0.1, 10.0], "share of w and h of the whole box",
+        "The second filter is zero farther from the centre than this.";
+    correlation_temporal: f64 = 20.0, [0.0, 1e6], "penalty",
         "mu: how strongly a later filter is held to the one before.";
     correlation_rounds: usize = 2, [1, 20], "rounds",
         "Rounds of the alternating direction method in which the filter learns.";
-    correlation_colour: f64 = 1.0, [0.0, 100.0], "share of the gradients'",
-        "Root mean square of the window's colours beside that of its gradients.";
+    colour_weight: f64 = 60.0, [0.0, 1000.0], "per unit of contrast",
+        "Weight of the foreground's contrast, by colour, in the exponent of the likelihood; needs correlation_weight.";
+    colour_rate: f64 = 0.04, [0.0001, 1.0], "share a learning",
+        "How far the colours of target and surroundings move towards what is learnt.";
     correlation_interval: usize = 2, [1, 10_000], "frames",
-        "The filter learns every so many frames.";
+        "A filter learns every so many frames, in turns.";
     scale_weight: f64 = 40.0, [0.0, 1000.0], "per unit of response",
         "Weight of the scale filter's response in the exponent of the likelihood; 0 leaves it out.";
     scale_sizes: usize = 17, [5, 101], "sizes",
@@ -172,7 +178,7 @@ parameters! {
         "How far the scale filter moves towards what it learns.";
     peak_share: f64 = 0.5, [0.0, 0.99], "share of particles",
         "Particles drawn around the place where the filter peaks instead of from the walk.";
-    peak_spread: f64 = 0.05, [0.001, 10.0], "sqrt(w h) of the part",
+    peak_spread: f64 = 0.1, [0.001, 10.0], "sqrt(w h) of the part",
         "Standard deviation of those draws along each axis.";
 
     first_targets: usize = 30, [1, 10_000], "samples",
@@ -199,6 +205,10 @@ parameters! {
         "The classifier is updated every so many frames.";
     update_score: f64 = 2.0, [-1000.0, 1000.0], "score",
         "And only if the classifier's score of the estimate is above this.";
+    hard_negatives: usize = 5, [0, 100], "samples a place",
+        "Background samples added at each other place that the cues over the window answer to.";
+    update_response: f64 = 0.7, [0.0, 1.0], "share of the running mean",
+        "Nothing is learnt from a frame in which the filters answer less than this share of what they lately did.";
     update_confidence: f64 = 0.5, [0.0, 1.0], "probability",
         "Nothing is learnt from a frame that, taken alone, gives a lower probability of an overlap above one half.";
 }

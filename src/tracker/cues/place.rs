@@ -1,0 +1,134 @@
+//! Correlation filters on the whole box, over place: beta times the mean of their responses at the hypothesis's centre.
+//!
+//! Steps:
+//! 1. two filters look at the same window: one learns only the cells inside the box that are likely the target's own, which
+//!    holds it when its surroundings change; the other learns it with what surrounds it, which holds it when somebody passes
+//!    before it,
+//! 2. each is credited with a running mean of what it answered at the estimate, before it learnt that frame,
+//! 3. the mean response is weighted by a power of the credits,
+//! 4. learning: in the first frame both, later in turns.
+
+use crate::{
+    correlation::{
+        filter::{CorrelationFilter, FilterOptions},
+        grid::CHANNELS,
+        response::Peak,
+        window::Window,
+    },
+    geometry::Rect,
+};
+
+use super::{Cue, Hypothesis, Parameters, WindowView};
+
+/// How fast credits follow.
+const CREDIT_RATE: f64 = 0.1;
+/// The power of the credits that responses are weighted by.
+const CREDIT_POWER: i32 = 6;
+/// The least credit, so that no filter is left out for ever.
+const LEAST_CREDIT: f64 = 0.01;
+
+/// The filters and their weight.
+pub(super) struct Place {
+    members: Vec<Member>,
+    /// beta.
+    weight: f64,
+    lessons: usize,
+}
+
+struct Member {
+    filter: CorrelationFilter,
+    /// Whether it learns the target's own cells only.
+    confined: bool,
+    /// In [0, 1] or a little above.
+    credit: f64,
+    /// Its weight in the mean response.
+    share: f64,
+    peak: Peak,
+}
+
+impl Place {
+    pub fn new(parameters: &Parameters, full: &Rect) -> Self {
+        let side = Window::around(full, parameters.correlation_window).side;
+        let filters = [
+            (parameters.correlation_support, parameters.correlation_own_cells),
+            (parameters.correlation_surroundings, false),
+        ];
+        let count = parameters.correlation_filters;
+        let member = |&(support, confined): &(f64, bool)| {
+            let options = FilterOptions {
+                side: WindowView::cells(parameters),
+                label_sigma: parameters.correlation_label_sigma,
+                temporal: parameters.correlation_temporal as f32,
+                rounds: parameters.correlation_rounds,
+                support,
+            };
+            Member {
+                filter: CorrelationFilter::new(options, CHANNELS, full.w / side, full.h / side),
+                confined,
+                credit: 1.0,
+                share: 1.0 / count as f64,
+                peak: Peak { x: 0.0, y: 0.0, value: 1.0, sharpness: 1.0 },
+            }
+        };
+        Self {
+            members: filters[..count].iter().map(member).collect(),
+            weight: parameters.correlation_weight,
+            lessons: 0,
+        }
+    }
+
+    /// How far the last look's peaks stand above the rest of the window, in standard deviations of the rest.
+    pub fn sharpness(&self) -> f64 {
+        self.members.iter().map(|member| member.share * f64::from(member.peak.sharpness)).sum()
+    }
+
+    /// The last look's mean response at the centre of a whole box, about 1 where the target is as learnt (step 3).
+    pub fn response(&self, full: &Rect) -> f64 {
+        self.members.iter().map(|member| member.share * member.answer(full)).sum()
+    }
+
+    /// Credits the filters with what they answered at the estimate (steps 2 and 3).
+    pub fn credit(&mut self, full: &Rect) {
+        for member in &mut self.members {
+            member.credit += CREDIT_RATE * (member.answer(full).max(0.0) - member.credit);
+        }
+        let power = |member: &Member| member.credit.max(LEAST_CREDIT).powi(CREDIT_POWER);
+        let total: f64 = self.members.iter().map(power).sum();
+        for member in &mut self.members {
+            member.share = power(member) / total;
+        }
+    }
+}
+
+impl Member {
+    fn answer(&self, full: &Rect) -> f64 {
+        let (x, y) = full.centre();
+        f64::from(self.filter.response().at(x, y))
+    }
+}
+
+impl Cue for Place {
+    fn look(&mut self, view: &WindowView) {
+        for member in &mut self.members {
+            member.peak = member.filter.respond(view.planes(), view.window()).peak();
+        }
+    }
+
+    fn over_window(&self, _view: &WindowView, full: &Rect) -> f64 {
+        self.weight * self.response(full)
+    }
+
+    fn log_likelihood(&self, hypothesis: &Hypothesis<'_>) -> f64 {
+        self.weight * self.response(&hypothesis.full)
+    }
+
+    fn learn(&mut self, view: &WindowView, _full: Rect) {
+        let (turn, count) = (self.lessons % self.members.len(), self.lessons);
+        for (number, member) in self.members.iter_mut().enumerate() {
+            if count == 0 || number == turn {
+                member.filter.learn(view.planes(), member.confined.then(|| view.own_cells()));
+            }
+        }
+        self.lessons += 1;
+    }
+}
