@@ -7,9 +7,10 @@ rounds of (rival's time / InfoPart's time); the ratio of all is the geometric me
 says it has lost the target may return at once: its time then says little, and --json has how often it said so.
 
 InfoPart tracks the part of a person and the whole box of other targets (those of others12, and car). Frames without
-the target (rows of NaN) are timed and not scored. With --tre every tracker is also started on frames spread evenly
-over the sequence, from the true box of each, and runs to the end: the benchmark's temporal robustness evaluation
-without its lists of hidden frames. A sequence's number is the plain mean of the AUC of its runs, not timed.
+the target (rows of NaN) are timed and not scored. A tracker that refuses a first box beyond the picture gets the part
+of it that is inside. With --tre every tracker is also started on frames spread evenly over the sequence, from the
+true box of each, and runs to the end: the benchmark's temporal robustness evaluation without its lists of hidden
+frames. A sequence's number is the plain mean of the AUC of its runs, not timed.
 
 Needs: pip install -r bench/requirements.txt (and dlib-bin for --rivals dlib), and `cargo build --release`; for
 --rivals NanoTrack its two networks, backbone.onnx and head.onnx, in the folder given with --models.
@@ -30,7 +31,9 @@ import time
 from collections import namedtuple
 from pathlib import Path
 
-from sequences import NAMES_HELP, PROJECT, data_folder, expand, fail, locate, read_rows, region_flags, tre_starts
+from sequences import (
+    NAMES_HELP, PROJECT, data_folder, expand, fail, locate, read_rows, region_flags, tre_starts, usual_folder,
+)
 
 RIVALS = ("Boosting", "CSRT", "KCF", "MIL", "MOSSE", "MedianFlow", "NanoTrack", "TLD", "dlib")
 NETWORKS = ("backbone.onnx", "head.onnx")
@@ -125,9 +128,20 @@ def make_rival(name, models):
     fail(f"OpenCV {cv2.__version__} has no {name} tracker: pip install opencv-contrib-python-headless")
 
 
+def started(name, models, image, box):
+    """A tracker on its first frame; one that does not take a box beyond the picture gets what of it is inside."""
+    x, y, w, h = round(box[0] - 1), round(box[1] - 1), round(box[2]), round(box[3])
+    tracker = make_rival(name, models)
+    try:
+        tracker.init(image, (x, y, w, h))
+    except cv2.error:
+        left, top, right, bottom = max(x, 0), max(y, 0), min(x + w, image.shape[1]), min(y + h, image.shape[0])
+        tracker = make_rival(name, models)
+        tracker.init(image, (left, top, right - left, bottom - top))
+    return tracker
+
+
 def run_rival(tracker, truth, images):
-    x, y, w, h = truth[0]
-    tracker.init(images[0], (round(x - 1), round(y - 1), round(w), round(h)))
     seconds, lost, boxes = 0.0, 0, [truth[0]]
     for image in images[1:]:
         start = time.perf_counter()
@@ -192,7 +206,10 @@ def run(name, sequence, frames, threads, start, options):
     else:
         cv2.setNumThreads(threads)
         images = frames.as_rgb if name == "dlib" else frames.images
-        done = run_rival(make_rival(name, options.models), truth, images[start:])
+        try:
+            done = run_rival(started(name, options.models, images[start], truth[0]), truth, images[start:])
+        except cv2.error as error:
+            fail(f"{name} fails on {sequence.name} from frame {start + 1}: {error}: leave one of them out")
     if len(done.boxes) != len(truth):
         fail(f"{name} gave {len(done.boxes)} boxes for the {len(truth)} frames of {sequence.name}")
     return done
@@ -256,9 +273,8 @@ def table(header, rows):
 
 def speed_table(all_found, names, threads):
     rivals = names[1:]
-    header = [
-        f"milliseconds per update, {threads} thread{'s' * (threads > 1)}", *names, *(f"{rival} / {OURS}" for rival in rivals)
-    ]
+    title = f"milliseconds per update, {threads} thread{'s' * (threads > 1)} each"
+    header = [title, *names, *(f"{rival} / {OURS}" for rival in rivals)]
     rows = []
     for sequence, found in all_found.items():
         times = [f"{statistics.median(found[name]['ms_per_update'][threads]):.2f}" for name in names]
@@ -297,7 +313,7 @@ def arguments():
     add("--tre", type=int, default=0, metavar="STARTS", help="also score the runs from so many start frames")
     add("--region", help="what InfoPart tracks: part, whole or a fraction [default: part of people, whole of others]")
     add("--threads", default="2", help="threads that each tracker may use: a number, or `both` for 1 and 2 [default: 2]")
-    add("--models", type=Path, metavar="DIR", help="NanoTrack's networks [default: models/nanotrack_v2 of the data]")
+    add("--models", type=Path, metavar="DIR", help="NanoTrack's networks [default: models/nanotrack_v2 of the data folder]")
     add("--infopart", default=PROJECT / "target/release/infopart", help="the program [default: target/release/infopart]")
     add("--data", help="the folder that holds otb/ and people/ [default: INFOPART_DATA]")
     add("--json", metavar="FILE", help="write every number to FILE")
@@ -310,6 +326,12 @@ def arguments():
     if options.rounds < 1 or options.tre < 0:
         fail("--rounds must be at least 1, --tre at least 0")
     return options
+
+
+def usual_models(data):
+    """The data's own; a folder of crowd.py's has none, but the usual folder may."""
+    folders = [folder / "models" / "nanotrack_v2" for folder in (data, usual_folder())]
+    return next((folder for folder in folders if folder.is_dir()), folders[0])
 
 
 def thread_counts(given):
@@ -334,7 +356,7 @@ def main():
     data = data_folder(options.data)
     sequences = [read_sequence(name, *locate(data, name)) for name in expand(options.sequences)]
     names = [OURS, *options.rivals]
-    options.models = options.models or data / "models" / "nanotrack_v2"
+    options.models = options.models or usual_models(data)
     for name in options.rivals:
         make_rival(name, options.models)  # Fails now rather than in the middle.
 
@@ -344,8 +366,8 @@ def main():
         all_found[sequence.name] = measure(sequence, names, options)
     about = machine()
     print(
-        f"{about['cpu']}, {about['cores']} cores, OpenCV {about['opencv']}; {' or '.join(map(str, options.threads))} threads "
-        f"each, median of {options.rounds} round{'s' * (options.rounds > 1)}, updates only\n"
+        f"{about['cpu']}, {about['cores']} cores, OpenCV {about['opencv']}; "
+        f"median of {options.rounds} round{'s' * (options.rounds > 1)}, updates only\n"
     )
     parts = [*(speed_table(all_found, names, threads) for threads in options.threads), score_table(all_found, names)]
     print("\n\n".join(parts + ([tre_table(all_found, names)] if options.tre else [])))

@@ -29,9 +29,14 @@ def fail(message):
     sys.exit(2)
 
 
+def usual_folder():
+    """Where the data is if --data does not say."""
+    return Path(os.environ.get("INFOPART_DATA") or PROJECT.parent / "shared" / "data")
+
+
 def data_folder(given, kinds=KINDS):
     """The folder of the data, if it holds any of those kinds."""
-    folder = Path(given or os.environ.get("INFOPART_DATA") or PROJECT.parent / "shared" / "data")
+    folder = Path(given) if given else usual_folder()
     if not any((folder / kind).is_dir() for kind in kinds):
         holds = " or ".join(f"{kind}/" for kind in kinds)
         fail(f"no {holds} in {folder}: give the folder that holds it with --data or INFOPART_DATA")
