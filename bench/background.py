@@ -15,7 +15,8 @@ from pathlib import Path
 
 import cv2
 import numpy as np
-from rivals import PROJECT, data_folder, executable, fail, table
+from rivals import executable, table
+from sequences import PROJECT, data_folder, fail
 
 
 def ours(options, video, folder):

@@ -19,7 +19,8 @@ from pathlib import Path
 
 import numpy as np
 
-from rivals import CROWD, OTHER7, PEOPLE8, PROJECT, data_folder, executable, fail, load_numpy, locate, overlaps, read_sequence, table
+from rivals import executable, load_numpy, overlaps, read_sequence, table
+from sequences import CROWD, OTHER7, PEOPLE8, PROJECT, data_folder, fail, locate
 
 BINS = 10
 # As in src/tracker/confidence.rs: the lowest log-odds at most, what they rise by in a frame, and those of a frame alone.

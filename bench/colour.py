@@ -20,7 +20,8 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
-from rivals import PEOPLE8, PROJECT, data_folder, executable, fail, load_numpy, locate, overlaps, read_sequence, score, table
+from rivals import executable, load_numpy, overlaps, read_sequence, score, table
+from sequences import PEOPLE8, PROJECT, data_folder, fail, locate
 
 load_numpy()
 

@@ -14,7 +14,7 @@ import sys
 from collections import defaultdict
 from pathlib import Path
 
-from rivals import CROWD, data_folder, fail
+from sequences import CROWD, data_folder, fail
 
 WIDTH, HEIGHT = 768, 576
 BORDER = 10  # Pixels that a box must keep from the picture's sides; half of it from top and bottom.

@@ -14,7 +14,8 @@ import subprocess
 from collections import Counter
 
 from crowd import HEIGHT, WIDTH, boxes_by_identity
-from rivals import PROJECT, data_folder, executable, fail, table
+from rivals import executable, table
+from sequences import PROJECT, data_folder, fail
 
 EDGE = 15  # Pixels from a side within which a last box has left.
 BEFORE, AFTER, GONE = 60, 40, 5

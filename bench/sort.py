@@ -17,7 +17,7 @@ import time
 from pathlib import Path
 from unittest import mock
 
-from rivals import PROJECT, data_folder, fail
+from sequences import PROJECT, data_folder, fail
 
 
 def load_reference(path):

@@ -13,7 +13,7 @@ import subprocess
 import tempfile
 from pathlib import Path
 
-from rivals import PROJECT, data_folder, fail
+from sequences import PROJECT, data_folder, fail
 
 FILTERS = ("kalman", "ekf", "ukf", "pf")
 

@@ -18,7 +18,8 @@ import statistics
 import subprocess
 import time
 
-from rivals import PROJECT, data_folder, executable, expand, fail, locate, table
+from rivals import executable, table
+from sequences import NAMES_HELP, PROJECT, data_folder, expand, fail, locate
 
 WINDOW, GRID = 4.0, 32  # Side of the searched window over the square root of the box's area; grid cells along it.
 PART, MOST_CELLS = 0.625, 4000
@@ -97,7 +98,7 @@ def bytes_per_second():
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     add = parser.add_argument
-    add("--sequences", nargs="+", default=["people8"], metavar="NAME", help="people8, other7, NAME or NAME-K [default: people8]")
+    add("--sequences", nargs="+", default=["people8"], metavar="NAME", help=f"{NAMES_HELP} [default: people8]")
     add("--rounds", type=int, default=5, help="runs of each sequence [default: 5]")
     add("--infopart", default=PROJECT / "target/release/infopart", help="the program [default: target/release/infopart]")
     add("--data", help="the folder that holds otb/ and people/ [default: INFOPART_DATA]")

@@ -16,7 +16,8 @@ import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from rivals import OURS, PROJECT, data_folder, executable, expand, fail, locate, table
+from rivals import OURS, executable, table
+from sequences import NAMES_HELP, PROJECT, data_folder, expand, fail, locate
 
 
 def track(program, place, flags):
@@ -33,7 +34,7 @@ def track(program, place, flags):
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     add = parser.add_argument
-    add("--sequences", nargs="+", default=["people8"], metavar="NAME", help="people8, other7, NAME or NAME-K [default: people8]")
+    add("--sequences", nargs="+", default=["people8"], metavar="NAME", help=f"{NAMES_HELP} [default: people8]")
     add("--strides", nargs="+", type=int, default=[1, 2, 3, 5, 10], metavar="K", help="[default: 1 2 3 5 10]")
     add("--seeds", type=int, default=5, help="seeds 1 to this [default: 5]")
     add("--threads", type=int, default=2, help="threads where speed is measured [default: 2]")

@@ -18,7 +18,9 @@ fn published(words: &str, data: &Path) -> String {
 fn the_data_is_whole_and_its_oddities_are_named() {
     let Some(data) = common::data_dir() else { return };
     let scene = Scene::empty();
-    let folders = ["otb", "people", "ships"].map(|name| data.join(name).display().to_string()).join(" ");
+    let folders = ["otb", "people", "ships", "others", "longterm"]
+        .map(|name| data.join(name).display().to_string())
+        .join(" ");
     let told = scene.accepts(&format!("check {folders}")).stdout;
     for needle in [
         "David: 471 rows, 471 images 320x240 (0300.jpg to 0770.jpg)",
@@ -27,8 +29,14 @@ fn the_data_is_whole_and_its_oddities_are_named() {
         "several targets: Jogging-1, Jogging-2",
         "only tb_100.txt has OPR FM",
         "the boxes do not have LR (smallest box 686 px in row 495), but tb_100.txt says so",
+        "199 rows, but the benchmark has 1698: it was cut",
+        "72 rows with NaN (the target is absent); the first is row 34",
         "people8: 8 of 8",
+        "people11: 11 of 11",
+        "people19: 19 of 19",
         "other7: 7 of 7",
+        "others12: 12 of 12",
+        "longterm: 3 of 3",
         "0 damaged",
     ] {
         assert!(told.contains(needle), "`{needle}` is not in: {told}");

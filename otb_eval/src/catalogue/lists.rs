@@ -17,18 +17,51 @@ pub enum SequenceList {
     Person,
     /// Eight sequences of people, two of them not from TB-100.
     People8,
+    /// Eleven more of people, six of them not from TB-100.
+    People11,
+    /// `people8` and `people11`.
+    People19,
     /// Seven sequences of other targets.
     Other7,
+    /// `other7` and five more, two of them not from TB-100.
+    Others12,
+    /// Three of TLD, in two of which the target is absent for a while.
+    Longterm,
 }
 
 const PEOPLE8: [&str; 8] =
     ["Crossing", "Walking2", "David3", "Jogging-1", "Jogging-2", "Couple", "pedestrian1", "person11"];
+const PEOPLE11: [&str; 11] = [
+    "Woman",
+    "Bolt",
+    "Singer2",
+    "Skating1",
+    "Human3",
+    "pedestrian2",
+    "campus2",
+    "campus3",
+    "campus4",
+    "campus5",
+    "campus7",
+];
 const OTHER7: [&str; 7] = ["Deer", "David", "DragonBaby", "FaceOcc1", "Freeman1", "Football1", "Diving"];
+const OTHERS5: [&str; 5] = ["boat1", "Bird2", "Man", "bag", "MotorRolling"];
+const LONGTERM: [&str; 3] = ["pedestrian1", "pedestrian2", "car"];
 
 impl SequenceList {
     /// All lists.
-    pub const ALL: [Self; 6] =
-        [Self::Tb100, Self::Tb50, Self::Cvpr13, Self::Person, Self::People8, Self::Other7];
+    pub const ALL: [Self; 10] = [
+        Self::Tb100,
+        Self::Tb50,
+        Self::Cvpr13,
+        Self::Person,
+        Self::People8,
+        Self::People11,
+        Self::People19,
+        Self::Other7,
+        Self::Others12,
+        Self::Longterm,
+    ];
 
     /// The name in flags.
     pub const fn name(self) -> &'static str {
@@ -38,7 +71,11 @@ impl SequenceList {
             Self::Cvpr13 => "cvpr13",
             Self::Person => "person",
             Self::People8 => "people8",
+            Self::People11 => "people11",
+            Self::People19 => "people19",
             Self::Other7 => "other7",
+            Self::Others12 => "others12",
+            Self::Longterm => "longterm",
         }
     }
 
@@ -52,7 +89,11 @@ impl SequenceList {
             Self::Cvpr13 => known(|one| one.in_cvpr13),
             Self::Person => known(|one| one.is_person),
             Self::People8 => PEOPLE8.to_vec(),
+            Self::People11 => PEOPLE11.to_vec(),
+            Self::People19 => [&PEOPLE8[..], &PEOPLE11[..]].concat(),
             Self::Other7 => OTHER7.to_vec(),
+            Self::Others12 => [&OTHER7[..], &OTHERS5[..]].concat(),
+            Self::Longterm => LONGTERM.to_vec(),
         }
     }
 }

@@ -30,8 +30,8 @@ fn starts_and_digits_are_as_the_benchmark_says() {
 #[test]
 fn the_lists_have_their_lengths() {
     let length = |word: &str| word.parse::<SequenceList>().unwrap().sequences().len();
-    let lengths = ["tb100", "tb50", "cvpr13", "person", "people8", "other7"].map(length);
-    assert_eq!(lengths, [100, 50, 51, 36, 8, 7]);
+    let lengths = SequenceList::ALL.map(|list| length(list.name()));
+    assert_eq!(lengths, [100, 50, 51, 36, 8, 11, 19, 7, 12, 3]);
     let message = "otb50".parse::<SequenceList>().unwrap_err().to_string();
     assert!(message.contains("tb50, cvpr13"), "{message}");
 }
@@ -82,6 +82,9 @@ fn every_spelling_means_one_target() {
 fn selections_mix_lists_and_names_without_repeating() {
     assert_eq!(select("Deer, jogging_1,people8").unwrap()[..3], ["Deer", "Jogging-1", "Crossing"]);
     assert_eq!(select("people8,Couple").unwrap().len(), 8);
+    assert_eq!(select("people19,others12").unwrap().len(), 31);
+    assert_eq!(select("people8,people11").unwrap(), select("people19").unwrap());
+    assert_eq!(select("longterm,people19").unwrap().len(), 20);
     assert_eq!(select("my_own").unwrap(), ["my_own"]);
     assert!(matches!(select(" ,"), Err(CatalogueError::NoSequence { .. })));
 }

@@ -152,7 +152,7 @@ fn checked_target(target: &Target, images: &mut images::Images) -> CheckedTarget
     let frames = target.frames.as_ref();
     let written = frames.and_then(|frames| truth::written(frames, &mut findings));
     let summary = frames.map(|frames| images.summary(target, frames, &mut findings));
-    truth::rows(target, &mut findings);
+    truth::rows(target, summary.as_ref().map(|images| images.count), &mut findings);
     names::known(target, &mut findings);
     let measured = measure(&target.truth);
     attributes::contradictions(&target.name, measured.as_ref(), &mut findings);

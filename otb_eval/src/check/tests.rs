@@ -133,10 +133,18 @@ fn what_the_benchmark_is_known_for_is_no_damage() {
 }
 
 #[test]
-fn a_sequence_with_other_rows_than_the_benchmark_is_damage() {
-    let root = tempfile::tempdir().unwrap();
-    sequence(root.path(), "Deer", &[1, 2], &plain(&ROW.repeat(2)));
-    finds(&checked(root.path()), Severity::Damage, "2 rows, but the benchmark has 71");
+fn a_sequence_with_other_rows_than_the_benchmark_is_damage_unless_its_images_were_cut_too() {
+    let with = |images: &[usize], rows: usize| {
+        let root = tempfile::tempdir().unwrap();
+        sequence(root.path(), "Deer", images, &plain(&ROW.repeat(rows)));
+        checked(root.path())
+    };
+    let all: Vec<usize> = (1..=72).collect();
+    finds(&with(&all[..3], 2), Severity::Damage, "2 rows, but the benchmark has 71; get the sequence again");
+    finds(&with(&all, 72), Severity::Damage, "72 rows, but the benchmark has 71");
+    let cut = with(&all[..2], 2);
+    finds(&cut, Severity::Oddity, "2 rows, but the benchmark has 71: it was cut");
+    assert_eq!(cut.damage().count(), 0);
 }
 
 #[test]

@@ -39,8 +39,8 @@ pub(super) fn written(frames: &FrameFolder, findings: &mut Vec<Finding>) -> Opti
     Some(format!("{}, {ends}{last}", separators.join("+")))
 }
 
-/// Rows that are no boxes, or boxes that toolkits take for none; and how many there are.
-pub(super) fn rows(target: &Target, findings: &mut Vec<Finding>) {
+/// Rows that are no boxes, or boxes that toolkits take for none; and how many there are, beside so many `images`.
+pub(super) fn rows(target: &Target, images: Option<usize>, findings: &mut Vec<Finding>) {
     let truth = &target.truth;
     let numbers = |row: &Rect| [row.x, row.y, row.w, row.h];
     let is_nan = |row: &Rect| numbers(row).iter().any(|number| number.is_nan());
@@ -65,11 +65,19 @@ pub(super) fn rows(target: &Target, findings: &mut Vec<Finding>) {
     if let Some(known) = catalogue::find(&target.name)
         && truth.len() != known.rows
     {
-        findings.push(Finding::damage(format!(
-            "{} rows, but the benchmark has {}; get the sequence again, or give the folder another name if it is your \
-             own cut",
-            truth.len(),
-            known.rows
-        )));
+        findings.push(other_length(truth.len(), known.rows, images));
     }
+}
+
+/// A shorter sequence with an image a row was cut on purpose; anything else is an accident.
+fn other_length(rows: usize, benchmark: usize, images: Option<usize>) -> Finding {
+    let both = format!("{rows} rows, but the benchmark has {benchmark}");
+    if rows < benchmark && images == Some(rows) {
+        return Finding::oddity(format!(
+            "{both}: it was cut, with its images, and its scores are not the benchmark's"
+        ));
+    }
+    Finding::damage(format!(
+        "{both}; get the sequence again, or give the folder another name if it is your own cut"
+    ))
 }

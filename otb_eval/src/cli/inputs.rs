@@ -13,8 +13,8 @@ pub struct DataArgs {
     /// JSON file of boxes such as OTB100.json
     #[arg(long, value_name = "DATA", num_args = 1..)]
     pub data: Vec<PathBuf>,
-    /// Sequences by name, in any toolkit's spelling, and lists of them: tb100, tb50, cvpr13, person, people8, other7
-    /// [default: all of the data]
+    /// Sequences by name, in any toolkit's spelling, and lists of them: tb100, tb50, cvpr13, person, people8, people11,
+    /// people19, other7, others12, longterm [default: all of the data]
     #[arg(long, value_name = "NAME,LIST,...")]
     pub sequences: Option<String>,
 }
