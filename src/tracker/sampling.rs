@@ -153,4 +153,17 @@ mod tests {
         let samples = draw(&Parameters::default(), &part, &part);
         assert!(samples.iter().all(|(_, label)| *label == Label::Target));
     }
+
+    #[test]
+    fn hard_negatives_lie_about_the_others_and_hold_little_of_the_target() {
+        let parameters = Parameters::default();
+        let part = Rect::new(100.0, 50.0, 20.0, 40.0);
+        let (far, near) = (part.translated(60.0, 5.0), part.translated(2.0, 3.0));
+        let mut found = Vec::new();
+        let mut rng = ChaCha8Rng::seed_from_u64(1);
+        Sampler::new(&parameters).draw_others(&part, &[far, near], &mut rng, |other| found.push(*other));
+        assert_eq!(found.len(), parameters.hard_negatives);
+        assert_eq!(found[0], far);
+        assert!(found.iter().all(|other| holds(&Sampler::field_of_other(&far), other)));
+    }
 }

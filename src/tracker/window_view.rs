@@ -4,8 +4,8 @@
 //! 1. integral images of blocks over the window around where the target was,
 //! 2. the foreground probability over it, by colour,
 //! 3. the window's cells, the foreground probability being one number of each.
-//! Before learning, after the foreground model has learnt:
-//! 4. steps 2 and 3 around where the target is, and which cells are its own.
+//! 4. before learning, once the foreground model has learnt: steps 2 and 3 around where the target is, and which cells are its
+//!    own.
 
 use crate::{
     correlation::{grid::Grid, window::Window},
