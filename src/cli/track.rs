@@ -126,7 +126,7 @@ pub struct TrackArgs {
 
 /// The tracker that the flags choose, with its parameters.
 enum Chosen {
-    InfoPart(CheckedParameters),
+    InfoPart(Box<CheckedParameters>),
     Colour(CheckedColourParameters),
 }
 
@@ -172,9 +172,9 @@ impl Chosen {
     fn start(&self, pool: Option<Arc<ThreadPool>>) -> Box<dyn Tracker> {
         match (self, pool) {
             (Self::InfoPart(parameters), Some(pool)) => {
-                Box::new(InfoPart::with_pool(parameters.clone(), pool))
+                Box::new(InfoPart::with_pool((**parameters).clone(), pool))
             }
-            (Self::InfoPart(parameters), None) => Box::new(InfoPart::new(parameters.clone())),
+            (Self::InfoPart(parameters), None) => Box::new(InfoPart::new((**parameters).clone())),
             (Self::Colour(parameters), Some(pool)) => {
                 Box::new(ColourTracker::with_pool(parameters.clone(), pool))
             }
@@ -186,7 +186,7 @@ impl Chosen {
 impl TrackArgs {
     fn chosen(&self) -> Result<Chosen> {
         Ok(match self.tracker {
-            TrackerName::Infopart => Chosen::InfoPart(self.parameters.resolve()?),
+            TrackerName::Infopart => Chosen::InfoPart(Box::new(self.parameters.resolve()?)),
             TrackerName::Colour => Chosen::Colour(self.parameters.resolve_colour()?),
         })
     }

@@ -20,7 +20,7 @@ fn scene(full: Rect) -> Frame {
             let (u, v) = ((x as f64 + 0.5 - full.x) / full.w, (y as f64 + 0.5 - full.y) / full.h);
             let noise = ((x * 7919 + y * 104_729) % 61) as u8;
             let inside = (0.0..1.0).contains(&u) && (0.0..1.0).contains(&v);
-            let stripe = (v * 6.0) as usize % 2 == 0 || u < 0.3;
+            let stripe = ((v * 6.0) as usize).is_multiple_of(2) || u < 0.3;
             data.extend(match (inside, stripe) {
                 (false, _) => [20 + noise / 4, 90 + noise, 110 + noise / 2],
                 (true, true) => [210, 40 + noise / 4, 40],
