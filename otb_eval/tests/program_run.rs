@@ -32,7 +32,13 @@ fn a_killed_run_goes_on_to_the_bytes_of_an_undisturbed_one() {
     let scene = Scene::with_walkers();
     scene.accepts(&format!("{RUN} --out whole"));
     let expected = scene.reproducible("whole");
-    assert_eq!(expected.len(), 3 * 3 + 1, "three sequences, three seeds, run.json: {:?}", expected.keys());
+    let files = 2 * 3 * 3 + 1;
+    assert_eq!(
+        expected.len(),
+        files,
+        "result and record, three sequences, three seeds, run.json: {:?}",
+        expected.keys()
+    );
     for least in [1, 4] {
         let out = format!("killed_{least}");
         let mut child = scene.command(&format!("{RUN} --out {out}")).stderr(Stdio::null()).spawn().unwrap();
@@ -92,6 +98,77 @@ fn a_second_run_does_nothing_and_other_parameters_are_refused_unmixed() {
     scene.write("fast.toml", "particles = 60\nparticle_sets = 1\n");
     let line = "run --data data --config T=fast.toml --out unknown";
     scene.refuses(line, &["unknown parameters (there is no run.json)"]);
+}
+
+#[test]
+fn a_damaged_result_does_not_count_as_done_and_is_made_again() {
+    let scene = Scene::with_walkers();
+    scene.accepts(&format!("{RUN} --out results"));
+    let expected = scene.reproducible("results");
+    let cut = scene.read("results/ope/fast/seed_2/Bob.txt");
+    scene.write("results/ope/fast/seed_1/Ann.txt", "");
+    scene.write("results/ope/fast/seed_2/Bob.txt", &cut[..cut.len() - 2]);
+    scene.write("results/ope/fast/seed_3/Cid.txt", "\u{1b}[2J garbage\n");
+    let jobs = scene.accepts("plan --data data --config fast=fast.toml --seeds 3 --out results");
+    assert_eq!(jobs.stdout.matches("\"done\":false").count(), 3, "{}", jobs.stdout);
+    scene.refuses("score --data data --results results", &["Bob.txt: it is not the file that was written"]);
+    let again = scene.accepts(&format!("{RUN} --out results"));
+    for needle in [
+        "note: ope/fast/seed_1/Ann: the result there is damaged, and is made again",
+        "seed_2/Bob.txt: it is not the file that was written",
+        "`\\u{1b}[2J garbage`",
+        "9 jobs: 6 were there, 3 done, 0 failed",
+    ] {
+        assert!(again.stderr.contains(needle), "`{needle}` is not in: {}", again.stderr);
+    }
+    assert!(scene.reproducible("results") == expected);
+    scene.accepts("score --data data --results results");
+}
+
+#[test]
+fn tre_keeps_away_from_the_frames_of_the_lists_and_does_not_mix_starts() {
+    let scene = Scene::with_walkers();
+    scene.write("omit/ann.txt", "2 3\n");
+    let plan = |flags: &str| {
+        let line =
+            format!("plan --data data --sequences Ann --config fast=fast.toml --protocol tre --out r{flags}");
+        let jobs = scene.accepts(&line).stdout;
+        let first =
+            |line: &str| serde_json::from_str::<serde_json::Value>(line).unwrap()["first_frame"].as_u64();
+        jobs.lines().map(|line| first(line).unwrap()).collect::<std::collections::BTreeSet<_>>()
+    };
+    assert_eq!(plan("").into_iter().collect::<Vec<_>>(), [1, 2, 3, 4, 5]);
+    assert_eq!(plan(" --init-omit omit").into_iter().collect::<Vec<_>>(), [1, 4, 5]);
+    let run = "run --data data --sequences Ann --config fast=fast.toml --protocol tre --out r";
+    scene.accepts(&format!("{run} --init-omit omit"));
+    scene.refuses(run, &["other lists of hidden frames"]);
+    let scored = scene.accepts("score --data data --results r --protocol tre --init-omit omit");
+    assert!(scored.stdout.contains("Ann"), "{}", scored.stdout);
+    scene.write("omit/ann.txt", "two 3\n");
+    scene.refuses(&format!("{run} --init-omit omit"), &["ann.txt, line 1: `two 3`"]);
+}
+
+#[test]
+fn a_result_is_on_the_disk_before_it_has_its_name() {
+    let scene = Scene::with_walkers();
+    let words = "run --data data --sequences Cid --config fast=fast.toml --jobs 1 --out results";
+    let traced = std::process::Command::new("strace")
+        .args(["-f", "-y", "-e", "trace=fsync,fdatasync,rename,renameat,renameat2", "-o", "trace.txt"])
+        .arg(env!("CARGO_BIN_EXE_otb_eval"))
+        .args(words.split_whitespace())
+        .current_dir(scene.path(""))
+        .output();
+    if !traced.is_ok_and(|output| output.status.success()) {
+        eprintln!("SKIPPED: no strace that may trace");
+        return;
+    }
+    let trace = scene.read("trace.txt");
+    let lines: Vec<&str> = trace.lines().collect();
+    let renamed =
+        lines.iter().position(|line| line.contains("rename") && line.contains("Cid.txt\"")).unwrap();
+    let is_sync = |line: &&str, name: &str| line.contains("fsync(") && line.contains(name);
+    assert!(lines[..renamed].iter().any(|line| is_sync(line, ".Cid.txt.")), "{trace}");
+    assert!(lines[renamed..].iter().any(|line| is_sync(line, "seed_1>")), "{trace}");
 }
 
 #[test]

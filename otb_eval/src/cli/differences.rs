@@ -5,10 +5,10 @@ use std::{collections::BTreeMap, fmt::Write};
 use infopart::output::TextTable;
 use otb_eval::{
     dataset::Dataset,
-    protocol::{Protocol, starts_of},
+    protocol::Protocol,
     results::{Results, TrackerResults},
     runner::stem,
-    scoring::{Measure, ScoreProblem, Table},
+    scoring::{Measure, ScoreProblem, Table, segments_of, start_of},
     toolkits::{Reason, reasons},
 };
 
@@ -129,8 +129,9 @@ fn reasons_in(dataset: &Dataset, tracker: &TrackerResults, protocol: Protocol) -
     let mut all: BTreeMap<u8, Found> = BTreeMap::new();
     for seed in &tracker.seeds {
         for target in &dataset.targets {
-            for (label, start) in starts_of(protocol, &target.truth).unwrap_or_default() {
+            for (label, by_rule) in segments_of(protocol, target, seed).unwrap_or_default() {
                 let Some(Ok(file)) = seed.read(&target.name, label.as_deref()) else { continue };
+                let Some(start) = start_of(protocol, target, by_rule, &file) else { continue };
                 for reason in reasons(&target.truth[start..], &file.rows) {
                     let nothing = Found { reason, rows: 0, stems: Vec::new() };
                     let found = all.entry(kind(reason)).or_insert(nothing);

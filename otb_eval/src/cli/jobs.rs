@@ -6,7 +6,7 @@ use anyhow::{Context, Result};
 use clap::Args;
 use infopart::{program::BadInput, tracker::Parameters};
 use otb_eval::{
-    protocol::{Protocol, ShiftRules},
+    protocol::{HiddenFrames, Protocol, ShiftRules},
     runner::{InfoPartFactory, Job, PlanOptions, Shard, TrackerFactory, named_factory, plan},
     store::Store,
 };
@@ -80,6 +80,7 @@ pub struct Work {
     pub store: Store,
     pub protocol: Protocol,
     pub shift_rules: ShiftRules,
+    pub hidden: HiddenFrames,
     pub problems: Problems,
 }
 
@@ -104,6 +105,7 @@ impl JobArgs {
             store: Store::new(&self.out),
             protocol: self.protocol,
             shift_rules: self.sre_shifts,
+            hidden: self.data.hidden()?,
             problems,
         })
     }

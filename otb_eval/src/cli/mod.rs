@@ -6,8 +6,13 @@ use anyhow::Error;
 use clap::{Parser, Subcommand};
 use infopart::program::{self, BAD_INPUT, INTERRUPTED};
 use otb_eval::{
-    catalogue::CatalogueError, convert::ConvertError, dataset::DatasetError, protocol::ProtocolError,
-    results::ResultsError, runner::FactoryError, store::StoreError,
+    catalogue::CatalogueError,
+    convert::ConvertError,
+    dataset::DatasetError,
+    protocol::{HiddenError, ProtocolError},
+    results::ResultsError,
+    runner::FactoryError,
+    store::StoreError,
 };
 
 mod check;
@@ -102,6 +107,7 @@ fn code_of(error: &Error) -> Option<u8> {
     let is_input = error.is::<CatalogueError>()
         || error.is::<DatasetError>()
         || error.is::<ProtocolError>()
+        || error.is::<HiddenError>()
         || error.is::<FactoryError>()
         || error.is::<StoreError>()
         || error.is::<ResultsError>()

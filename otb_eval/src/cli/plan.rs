@@ -6,6 +6,8 @@ use anyhow::Result;
 use clap::Args;
 use infopart::output::{Destination, StandardOutput};
 
+use otb_eval::store::Kept;
+
 use super::jobs::JobArgs;
 
 pub const EXAMPLES: &str = "\
@@ -26,7 +28,7 @@ pub fn plan(args: &PlanArgs) -> Result<()> {
     let work = args.jobs.work()?;
     let mut output = StandardOutput::new();
     for job in &work.jobs {
-        let line = job.to_json(work.store.is_done(job));
+        let line = job.to_json(work.store.kept(job) == Kept::Whole);
         writeln!(output, "{line}").map_err(|error| output.name_error(error))?;
     }
     output.complete()?;

@@ -24,6 +24,8 @@ struct Entry {
     shift: Option<String>,
     #[serde(rename = "resType")]
     kind: Option<String>,
+    #[serde(rename = "startFrame")]
+    start: Option<usize>,
     fps: Option<f64>,
     #[serde(rename = "tmplsize")]
     template: Option<Vec<f64>>,
@@ -72,6 +74,9 @@ fn read_file(path: &Path, tracker: &str, protocol: Protocol) -> Result<Vec<Track
         return Err(wrong(format!("{} segments; {} has one", segments.len(), protocol.title())));
     }
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let name = segments.iter().find_map(|segment| segment.sequence.as_deref()).unwrap_or(&stem);
+    let sequence = in_the_benchmarks_spelling(name);
+    let first_frame = first_frame(&sequence, &segments);
     let track = |(index, segment): (usize, Entry)| {
         let label = match protocol {
             Protocol::Ope => None,
@@ -85,10 +90,20 @@ fn read_file(path: &Path, tracker: &str, protocol: Protocol) -> Result<Vec<Track
         };
         let rows = boxes(&segment).map_err(wrong)?;
         let seconds = segment.fps.filter(|fps| *fps > 0.0).map(|fps| vec![fps.recip(); rows.len()]);
-        let sequence = in_the_benchmarks_spelling(segment.sequence.as_deref().unwrap_or(&stem));
-        Ok(Track { tracker: tracker.to_owned(), protocol, seed: 0, sequence, label, rows, seconds })
+        let start = segment.start.filter(|_| protocol == Protocol::Tre);
+        let start = start.and_then(|start| start.checked_sub(first_frame));
+        let (tracker, sequence) = (tracker.to_owned(), sequence.clone());
+        Ok(Track { tracker, protocol, seed: 0, sequence, label, start, rows, seconds })
     };
     segments.into_iter().enumerate().map(track).collect()
+}
+
+/// The number that a file's segments have for the first row of the truth: that in the name of the frame's file, or 1 if
+/// one of them starts before that. The archive counts Tiger1 from 1, though its first file is 0006.
+fn first_frame(sequence: &str, segments: &[Entry]) -> usize {
+    let in_files = catalogue::find(sequence).map_or(1, |known| known.first_frame);
+    let earliest = segments.iter().filter_map(|segment| segment.start).min();
+    if earliest.is_some_and(|earliest| earliest < in_files) { 1 } else { in_files }
 }
 
 /// A segment's results as boxes.
@@ -158,8 +173,9 @@ fn file(mut segments: Vec<&Track>, tracks: &[Track]) -> OutputFile {
     let first = segments[0];
     segments.sort_by_key(|track| order(track));
     let tracker_folder = PathBuf::from(first.protocol.title()).join(name_with_seed(first, tracks));
-    // Every segment ends with the sequence, and the first begins with it.
-    let whole = segments.iter().map(|track| track.rows.len()).max().unwrap_or(0);
+    // Where nothing else is known every segment ends with the sequence, and the first begins with it.
+    let last = |track: &&Track| track.start.unwrap_or(0) + track.rows.len();
+    let whole = segments.iter().map(last).max().unwrap_or(0);
     let entries: Vec<String> = segments.iter().map(|track| entry(track, whole)).collect();
     OutputFile {
         path: tracker_folder.join(format!("{}.json", first.sequence)),
@@ -178,7 +194,7 @@ fn order(track: &Track) -> (usize, Option<&str>) {
 
 fn entry(track: &Track, whole: usize) -> String {
     let first_frame = catalogue::find(&track.sequence).map_or(1, |known| known.first_frame);
-    let start = first_frame + whole - track.rows.len();
+    let start = first_frame + track.start.unwrap_or(whole - track.rows.len());
     let fps = track.seconds.as_deref().and_then(frames_per_second).unwrap_or(-1.0);
     let shift = track.label.as_ref().filter(|_| track.protocol == Protocol::Sre);
     let head = json!({

@@ -27,7 +27,7 @@ use crate::{
 /// How results lie in folders and files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Layout {
-    /// `PROTOCOL/TRACKER/seed_S/SEQ[_SEGMENT].txt`, as `otb_eval run` writes.
+    /// `PROTOCOL/TRACKER/seed_S/SEQ[_SEGMENT].txt`, as `otb_eval run` writes, with times and a record of each.
     Run,
     /// `TRACKER/SEQ.txt` with `SEQ_time.txt` beside.
     Flat,
@@ -114,6 +114,8 @@ pub struct Track {
     pub sequence: String,
     /// Nothing in OPE, `01` to `20` in TRE, the shift's name in SRE.
     pub label: Option<String>,
+    /// The row of the truth, counted from 0, that a run of TRE starts on, if the layout tells.
+    pub start: Option<usize>,
     /// A row a frame, as they stand in the file.
     pub rows: Vec<Rect>,
     /// The seconds of each frame, if they are known; from a layout that knows frames per second alone, their mean.

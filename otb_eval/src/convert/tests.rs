@@ -12,6 +12,7 @@ fn track(sequence: &str, protocol: Protocol, label: Option<&str>, rows: Vec<Rect
         seed: 0,
         sequence: sequence.into(),
         label: label.map(str::to_owned),
+        start: None,
         rows,
         seconds,
     }
@@ -75,7 +76,10 @@ proptest! {
 fn segments_keep_their_labels_and_have_the_benchmarks_frame_numbers() {
     let rows = |count: usize| vec![box_at(1.0); count];
     let tre: Vec<Track> = (1..=3)
-        .map(|run| track("David", Protocol::Tre, Some(&format!("{run:02}")), rows(472 - run)))
+        .map(|run| Track {
+            start: Some(run - 1),
+            ..track("David", Protocol::Tre, Some(&format!("{run:02}")), rows(472 - run))
+        })
         .collect();
     let sre: Vec<Track> = ["down", "left", "scale_12", "topLeft"]
         .map(|shift| track("David", Protocol::Sre, Some(shift), rows(471)))
@@ -176,4 +180,32 @@ fn affine_results_become_the_benchmarks_boxes() {
         assert_eq!(track.rows, [Rect::new(48.0, 47.0, 25.0, 62.0)], "{:?}", track.label);
     }
     assert_eq!(tracks.len(), 2);
+}
+
+#[test]
+fn published_starts_are_kept_however_their_frames_are_counted() {
+    let root = tempfile::tempdir().unwrap();
+    fs::create_dir_all(root.path().join("TRE/T")).unwrap();
+    let one = |name: &str, start: usize, rows: usize| {
+        let rows = vec!["[1, 2, 3, 4]"; rows].join(", ");
+        format!(
+            r#"{{"seqName": "{name}", "startFrame": {start}, "resType": "rect", "fps": 2, "res": [{rows}]}}"#
+        )
+    };
+    let json = |name: &str, starts: [(usize, usize); 2]| {
+        let text = format!("[{}]", starts.map(|(start, rows)| one(name, start, rows)).join(", "));
+        fs::write(root.path().join(format!("TRE/T/{name}.json")), text).unwrap();
+    };
+    json("ClifBar", [(1, 4), (3, 2)]);
+    json("David", [(300, 4), (302, 2)]);
+    json("Tiger1", [(1, 4), (3, 2)]);
+    json("Mine", [(1, 4), (3, 2)]);
+    let (tracks, problems) = read(Layout::Jwlim, root.path()).unwrap();
+    assert!(problems.is_empty() && tracks.len() == 8, "{problems:?}");
+    for layout in [Layout::Run, Layout::Jwlim] {
+        let back = round_trip(layout, &tracks);
+        assert_eq!(back, tracks, "{layout}");
+        let starts: Vec<Option<usize>> = back.iter().map(|track| track.start).collect();
+        assert_eq!(starts, [Some(0), Some(2)].repeat(4), "{layout}");
+    }
 }

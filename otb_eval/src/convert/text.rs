@@ -11,6 +11,7 @@ use crate::{
     protocol::{Protocol, SHIFTS},
     results::{Results, ResultsError, SeedResults},
     runner::stem,
+    store::Record,
 };
 
 /// The name of pytracking's parameters where nothing else is known.
@@ -75,12 +76,13 @@ fn of_protocol(
             for file in seed.stems() {
                 let (sequence, label) = split(file, protocol);
                 match track_of(seed, &sequence, label.as_deref()) {
-                    Ok((rows, seconds)) => tracks.push(Track {
+                    Ok((rows, start, seconds)) => tracks.push(Track {
                         tracker: tracker.name.clone(),
                         protocol,
                         seed: seed.seed,
                         sequence: in_the_benchmarks_spelling(&sequence),
                         label,
+                        start: start.filter(|_| protocol == Protocol::Tre),
                         rows,
                         seconds,
                     }),
@@ -96,15 +98,13 @@ fn of_protocol(
     Ok(tracks)
 }
 
-type Boxes = Vec<infopart::geometry::Rect>;
+/// Boxes, the row of the truth that they start on, and times.
+type Content = (Vec<infopart::geometry::Rect>, Option<usize>, Option<Vec<f64>>);
 
-fn track_of(
-    seed: &SeedResults,
-    sequence: &str,
-    label: Option<&str>,
-) -> Result<(Boxes, Option<Vec<f64>>), ResultsError> {
-    let rows = seed.read(sequence, label).transpose()?.map(|file| file.rows).unwrap_or_default();
-    Ok((rows, seed.read_seconds(sequence, label).transpose()?))
+fn track_of(seed: &SeedResults, sequence: &str, label: Option<&str>) -> Result<Content, ResultsError> {
+    let file = seed.read(sequence, label).transpose()?;
+    let (rows, start) = file.map(|file| (file.rows, file.start)).unwrap_or_default();
+    Ok((rows, start, seed.read_seconds(sequence, label).transpose()?))
 }
 
 /// `SEQ_SEGMENT` into both.
@@ -144,7 +144,13 @@ pub(super) fn files(layout: Layout, tracks: &[Track]) -> Vec<OutputFile> {
             files.push(file(times.join(format!("{stem}_time.txt")), lines_of(seconds), false));
         }
         let separator = if layout == Layout::Pytracking { '\t' } else { ',' };
-        files.push(file(folder.join(format!("{stem}.txt")), rows_of(track, separator), true));
+        let (path, text) = (folder.join(format!("{stem}.txt")), rows_of(track, separator));
+        if layout == Layout::Run {
+            let start = if track.protocol == Protocol::Tre { track.start } else { Some(0) };
+            let record = Record::new(text.as_bytes(), track.rows.len(), start);
+            files.push(file(Record::path(&path), record.text(), false));
+        }
+        files.push(file(path, text, true));
     }
     files
 }

@@ -63,6 +63,7 @@ fn target(folder: &Path, found: OtbTarget, mut truth: Vec<infopart::geometry::Re
     Target {
         name: known.map_or(found.name, |known| known.name.to_owned()),
         truth,
+        hidden: Vec::new(),
         frames: Some(FrameFolder { path: folder.to_owned(), target: found.number, first_frame: omitted + 1 }),
     }
 }

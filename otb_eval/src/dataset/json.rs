@@ -30,6 +30,7 @@ fn target(name: String, entry: &Entry) -> Target {
     Target {
         name: catalogue::find(&name).map_or(name, |known| known.name.to_owned()),
         truth: entry.gt_rect.iter().copied().map(rect).collect(),
+        hidden: Vec::new(),
         frames: None,
     }
 }

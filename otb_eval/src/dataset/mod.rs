@@ -8,11 +8,14 @@ mod json;
 
 use std::{
     collections::HashSet,
+    ops::RangeInclusive,
     path::{Path, PathBuf},
 };
 
 use infopart::{geometry::Rect, sequence::SequenceError};
 use thiserror::Error;
+
+use crate::protocol::{HiddenFrames, Protocol, ProtocolError, starts_of};
 
 /// A target whose true boxes are known.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,6 +24,8 @@ pub struct Target {
     pub name: String,
     /// The true boxes, a row a frame, as they stand in the file.
     pub truth: Vec<Rect>,
+    /// Rows of the truth, counted from 0, on which the target is hidden, so that TRE starts on none of them.
+    pub hidden: Vec<RangeInclusive<usize>>,
     /// Where its frames are; `None` if only its boxes are known.
     pub frames: Option<FrameFolder>,
 }
@@ -110,12 +115,28 @@ impl Dataset {
                 }
             }
         }
+        dataset.hide(&HiddenFrames::default());
         Ok((dataset, problems))
+    }
+
+    /// With these lists of hidden frames instead of the benchmark's.
+    pub fn hide(&mut self, lists: &HiddenFrames) {
+        self.targets.iter_mut().for_each(|target| target.hidden = lists.rows(&target.name));
     }
 
     /// The target of that name.
     pub fn target(&self, name: &str) -> Option<&Target> {
         self.targets.iter().find(|target| target.name == name)
+    }
+}
+
+impl Target {
+    /// The label of each segment of a protocol and the row of the truth, counted from 0, where it starts.
+    ///
+    /// # Errors
+    /// [`ProtocolError::TooShort`].
+    pub fn starts(&self, protocol: Protocol) -> Result<Vec<(Option<String>, usize)>, ProtocolError> {
+        starts_of(protocol, &self.truth, &self.hidden)
     }
 }
 

@@ -1,14 +1,16 @@
 //! Where a tracker starts: once from the first frame, from twenty frames, or from twelve wrong boxes.
 
+mod hidden;
 mod spatial;
 mod temporal;
 
-use std::{fmt, str::FromStr};
+use std::{fmt, ops::RangeInclusive, str::FromStr};
 
 use infopart::geometry::Rect;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+pub use hidden::{HiddenError, HiddenFrames};
 pub use spatial::{SHIFTS, Shift, ShiftRules, unscaled};
 pub use temporal::{RUNS, starts};
 
@@ -97,13 +99,14 @@ pub enum ProtocolError {
 }
 
 /// The starts of a protocol on a sequence. `frame_size` is the frame's width and height in pixels, to which SRE
-/// clips its boxes, by the rules of `shift_rules`.
+/// clips its boxes, by the rules of `shift_rules`; TRE starts on none of the rows of `hidden`.
 ///
 /// # Errors
 /// [`ProtocolError`] if the truth has no box to start on, or too few for TRE.
 pub fn segments(
     protocol: Protocol,
     truth: &[Rect],
+    hidden: &[RangeInclusive<usize>],
     frame_size: (usize, usize),
     shift_rules: ShiftRules,
 ) -> Result<Vec<Segment>, ProtocolError> {
@@ -116,7 +119,7 @@ pub fn segments(
         };
         Ok(Segment { label, start, first_box })
     };
-    starts_of(protocol, truth)?.into_iter().enumerate().map(segment).collect()
+    starts_of(protocol, truth, hidden)?.into_iter().enumerate().map(segment).collect()
 }
 
 /// The label of each segment of a protocol and the row of the truth, counted from 0, where it starts: what scoring
@@ -124,11 +127,15 @@ pub fn segments(
 ///
 /// # Errors
 /// [`ProtocolError::TooShort`].
-pub fn starts_of(protocol: Protocol, truth: &[Rect]) -> Result<Vec<(Option<String>, usize)>, ProtocolError> {
+pub fn starts_of(
+    protocol: Protocol,
+    truth: &[Rect],
+    hidden: &[RangeInclusive<usize>],
+) -> Result<Vec<(Option<String>, usize)>, ProtocolError> {
     let numbered = |(index, start): (usize, usize)| (Some(format!("{:02}", index + 1)), start);
     Ok(match protocol {
         Protocol::Ope => vec![(None, 0)],
-        Protocol::Tre => starts(truth)?.into_iter().enumerate().map(numbered).collect(),
+        Protocol::Tre => starts(truth, hidden)?.into_iter().enumerate().map(numbered).collect(),
         Protocol::Sre => SHIFTS.iter().map(|shift| (Some(shift.name().to_owned()), 0)).collect(),
     })
 }
@@ -147,11 +154,11 @@ mod tests {
     #[test]
     fn one_pass_starts_on_the_first_box_and_needs_one() {
         let truth = [Rect::new(3.0, 4.0, 5.0, 6.0); 2];
-        let segments = segments(Protocol::Ope, &truth, (20, 20), ShiftRules::Matlab).unwrap();
+        let segments = segments(Protocol::Ope, &truth, &[], (20, 20), ShiftRules::Matlab).unwrap();
         assert_eq!(segments, [Segment { label: None, start: 0, first_box: truth[0] }]);
         let absent = [Rect::new(f64::NAN, 0.0, 0.0, 0.0)];
         assert_eq!(
-            super::segments(Protocol::Sre, &absent, (20, 20), ShiftRules::Matlab),
+            super::segments(Protocol::Sre, &absent, &[], (20, 20), ShiftRules::Matlab),
             Err(ProtocolError::NoFirstBox)
         );
     }

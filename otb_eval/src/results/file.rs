@@ -8,6 +8,7 @@ use std::{
 use infopart::{geometry::Rect, sequence::parse_boxes};
 
 use super::ResultsError;
+use crate::store::Record;
 
 /// A tracker's boxes on a sequence.
 #[derive(Debug, Clone, PartialEq)]
@@ -16,6 +17,8 @@ pub struct ResultFile {
     pub rows: Vec<Rect>,
     /// What stands between the numbers of a row.
     pub separators: Separators,
+    /// The row of the truth, counted from 0, that the first row is of, if a record beside the file tells.
+    pub start: Option<usize>,
 }
 
 /// What stands between the numbers of a file. Toolkits' readers take only some.
@@ -30,18 +33,24 @@ pub struct Separators {
 }
 
 impl ResultFile {
-    /// Reads a file of `x,y,w,h` rows, separated by commas, tabs or spaces.
+    /// Reads a file of `x,y,w,h` rows, separated by commas, tabs or spaces, and checks it by the record beside it, if there is
+    /// one.
     ///
     /// # Errors
     /// [`ResultsError`], naming the file and line.
     pub fn read(path: &Path) -> Result<Self, ResultsError> {
         let bytes = fs::read(path).map_err(|source| ResultsError::Io { path: path.to_owned(), source })?;
+        let record = Record::beside(path)?;
         let text = String::from_utf8_lossy(&bytes);
         let rows = parse_boxes(&text, path)?;
         if rows.is_empty() {
             return Err(ResultsError::Empty { path: path.to_owned() });
         }
-        Ok(Self { rows, separators: Separators::of(&text) })
+        if record.as_ref().is_some_and(|record| !record.is_of(&bytes)) {
+            return Err(ResultsError::Altered { path: path.to_owned(), record: Record::path(path) });
+        }
+        let start = record.and_then(|record| record.start());
+        Ok(Self { rows, separators: Separators::of(&text), start })
     }
 }
 
@@ -55,7 +64,7 @@ impl Separators {
 }
 
 /// The seconds beside a result: `SEQ_time.txt` there, or in a folder `times`, as got10k keeps them.
-pub(super) fn read_seconds(result: &Path) -> Result<Option<Vec<f64>>, ResultsError> {
+pub(crate) fn read_seconds(result: &Path) -> Result<Option<Vec<f64>>, ResultsError> {
     let stem = result.file_stem().unwrap_or_default().to_string_lossy();
     let name = format!("{stem}_time.txt");
     let beside = result.with_file_name(&name);

@@ -17,6 +17,7 @@ use crate::{
     store::{Identity, Machine, StoreError},
 };
 
+pub(crate) use file::read_seconds;
 pub use file::{ResultFile, Separators};
 
 /// Results that cannot be used.
@@ -69,6 +70,14 @@ pub enum ResultsError {
     Empty {
         /// The file.
         path: PathBuf,
+    },
+    /// A file that is not the one that was written.
+    #[error("{path}: it is not the file that was written, by its checksum in {record}; make the result again, or remove that record if the change is meant", path = path.display(), record = record.display())]
+    Altered {
+        /// The file.
+        path: PathBuf,
+        /// The record beside it.
+        record: PathBuf,
     },
     /// A line of times that is no number.
     #[error("{path}, line {line}: `{text}` is no time; write the seconds of a frame a line", path = path.display())]
@@ -172,12 +181,20 @@ impl SeedResults {
         label: Option<&str>,
     ) -> Option<Result<Vec<f64>, ResultsError>> {
         let path = self.files.get(&stem(sequence, label))?;
-        file::read_seconds(path).transpose()
+        read_seconds(path).transpose()
     }
 
     /// Stems `SEQ[_SEGMENT]` of all results.
     pub fn stems(&self) -> impl Iterator<Item = &str> {
         self.files.keys().map(String::as_str)
+    }
+
+    /// The labels `01`, `02`, ... of the segments of a sequence that there are results of.
+    pub fn numbers<'a>(&'a self, sequence: &'a str) -> impl Iterator<Item = &'a str> {
+        self.files.keys().filter_map(move |stem| {
+            let label = stem.strip_prefix(sequence)?.strip_prefix('_')?;
+            (label.len() == 2 && label.bytes().all(|byte| byte.is_ascii_digit())).then_some(label)
+        })
     }
 
     /// Jobs that failed, by stem, with the reason.

@@ -122,7 +122,7 @@ fn jobs_of(target: &Target, options: &PlanOptions) -> Result<Vec<Job>, PlanProbl
     let folder = target.frames.as_ref().ok_or_else(|| PlanProblem::NoFrames { name: name() })?;
     let frame_size =
         first_frame_size(folder).map_err(|source| PlanProblem::Frames { name: name(), source })?;
-    let segments = segments(options.protocol, &target.truth, frame_size, options.shift_rules)
+    let segments = segments(options.protocol, &target.truth, &target.hidden, frame_size, options.shift_rules)
         .map_err(|source| PlanProblem::Protocol { name: name(), source })?;
     let mut jobs = Vec::new();
     for tracker in &options.trackers {
@@ -181,6 +181,7 @@ mod tests {
         let target = Target {
             name: "Boxes".into(),
             truth: vec![infopart::geometry::Rect::new(1.0, 1.0, 2.0, 2.0); 3],
+            hidden: vec![],
             frames: None,
         };
         let options = PlanOptions {

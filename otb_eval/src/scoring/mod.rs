@@ -7,6 +7,7 @@
 
 mod measure;
 mod problem;
+mod segments;
 mod sequence;
 mod speed;
 mod table;
@@ -18,13 +19,14 @@ use rayon::prelude::*;
 use crate::{
     catalogue::{self, Attribute, AttributeSource},
     dataset::{Dataset, Target},
-    protocol::{Protocol, starts_of},
+    protocol::Protocol,
     results::{Results, SeedResults, TrackerResults},
     toolkits::Rules,
 };
 
 pub use measure::{Measure, UnknownMeasure};
 pub use problem::ScoreProblem;
+pub use segments::{Segment, segments_of, start_of};
 pub use speed::frames_per_second;
 pub use table::{AttributeScores, Scores, SequenceScores, Spread, Table, TrackerScores};
 
@@ -81,12 +83,13 @@ fn targets<'a>(
             problems.push(ScoreProblem::NoTruth { sequence: name.clone() });
         }
     }
-    let is_scorable = |target: &&Target| match starts_of(options.protocol, &target.truth) {
-        Ok(_) => true,
-        Err(source) => {
+    let seeds = || results.trackers.iter().flat_map(|tracker| &tracker.seeds);
+    let is_scorable = |target: &&Target| match target.starts(options.protocol) {
+        Err(source) if !seeds().any(|seed| segments_of(options.protocol, target, seed).is_ok()) => {
             problems.push(ScoreProblem::Protocol { sequence: target.name.clone(), source });
             false
         }
+        _ => true,
     };
     dataset.targets.iter().filter(|target| wanted.contains(&target.name)).filter(is_scorable).collect()
 }
@@ -106,7 +109,10 @@ fn sequences_with_results(
         .collect();
     let (mut wanted, mut explained) = (BTreeSet::new(), BTreeSet::new());
     for target in &dataset.targets {
-        for (label, _) in starts_of(protocol, &target.truth).unwrap_or_default() {
+        let seeds = results.trackers.iter().flat_map(|tracker| &tracker.seeds);
+        let segments = seeds.flat_map(|seed| segments_of(protocol, target, seed).unwrap_or_default());
+        let labels: BTreeSet<Option<String>> = segments.map(|(label, _)| label).collect();
+        for label in labels {
             let stem = crate::runner::stem(&target.name, label.as_deref());
             if stems.contains(stem.as_str()) {
                 wanted.insert(target.name.clone());

@@ -62,6 +62,20 @@ pub enum ScoreProblem {
         /// Whose rules.
         toolkit: Toolkit,
     },
+    /// A run of TRE of which nothing tells on which frame it starts, so that it cannot be scored.
+    #[error("{tracker}, {stem}: {}", start_problem(*start, *rows, *truth))]
+    Start {
+        /// The tracker.
+        tracker: String,
+        /// `SEQ_SEGMENT`.
+        stem: String,
+        /// The row, counted from 0, where it says that it starts.
+        start: Option<usize>,
+        /// Rows of the result.
+        rows: usize,
+        /// Rows of the ground truth.
+        truth: usize,
+    },
     /// The toolkit itself would fail.
     #[error("{tracker}, {stem}: {source}")]
     Crash {
@@ -72,6 +86,19 @@ pub enum ScoreProblem {
         /// Which toolkit, and on what.
         source: Crash,
     },
+}
+
+fn start_problem(start: Option<usize>, rows: usize, truth: usize) -> String {
+    match start {
+        Some(start) => format!(
+            "the run starts in row {} of a ground truth of {truth} rows, so that it is of other data; give the data it was made on",
+            start + 1
+        ),
+        None => format!(
+            "the run has {rows} rows, which the benchmark's start does not leave of {truth}, and nothing tells where it starts; \
+             convert it from the published JSON or .mat files with this version, which keeps the starts"
+        ),
+    }
 }
 
 impl ScoreProblem {

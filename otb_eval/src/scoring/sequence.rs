@@ -1,9 +1,9 @@
 //! Step 1: one tracker with one seed on one sequence.
 
-use super::{ScoreOptions, ScoreProblem, frames_per_second};
+use super::{ScoreOptions, ScoreProblem, Segment, frames_per_second, segments_of, start_of};
 use crate::{
     dataset::Target,
-    protocol::{starts_of, unscaled},
+    protocol::unscaled,
     results::{ResultFile, SeedResults},
     runner::stem,
     toolkits::{Curves, Hits, evaluate},
@@ -25,10 +25,10 @@ pub(super) fn score(
 ) -> SequenceOutcome {
     let (mut total, mut problems, mut seconds) = (None::<Hits>, Vec::new(), vec![0.0]);
     let mut is_whole = true;
-    for (label, start) in starts_of(options.protocol, &target.truth).unwrap_or_default() {
-        let label = label.as_deref();
-        match segment_hits(tracker, seed, target, label, start, options) {
-            Ok((hits, rows)) => {
+    for segment in segments_of(options.protocol, target, seed).unwrap_or_default() {
+        let label = segment.0.as_deref();
+        match segment_hits(tracker, seed, target, &segment, options) {
+            Ok((hits, rows, start)) => {
                 match &mut total {
                     Some(total) => total.merge(&hits),
                     None => total = Some(hits),
@@ -61,15 +61,15 @@ pub(super) fn score(
     SequenceOutcome { curves, frames_per_second: frames_per_second(&seconds), problems }
 }
 
-/// The segment's hits, and the rows of its result.
+/// The segment's hits, the rows of its result, and the row of the truth where it starts.
 fn segment_hits(
     tracker: &str,
     seed: &SeedResults,
     target: &Target,
-    label: Option<&str>,
-    start: usize,
+    (label, by_rule): &Segment,
     options: &ScoreOptions,
-) -> Result<(Hits, usize), ScoreProblem> {
+) -> Result<(Hits, usize, usize), ScoreProblem> {
+    let label = label.as_deref();
     let stem = stem(&target.name, label);
     let tracker = tracker.to_owned();
     let Some(file) = seed.read(&target.name, label) else {
@@ -80,12 +80,16 @@ fn segment_hits(
         Ok(file) => with_scale_undone(file, label, options),
         Err(source) => return Err(ScoreProblem::Unreadable { tracker, source }),
     };
+    let Some(start) = start_of(options.protocol, target, *by_rule, &file) else {
+        let (rows, truth) = (file.rows.len(), target.truth.len());
+        return Err(ScoreProblem::Start { tracker, stem, start: file.start, rows, truth });
+    };
     let truth = &target.truth[start..];
     options
         .rules
         .check_separators(file.separators)
         .and_then(|()| evaluate(&options.rules, truth, &file.rows))
-        .map(|hits| (hits, file.rows.len()))
+        .map(|hits| (hits, file.rows.len(), start))
         .map_err(|source| ScoreProblem::Crash { tracker, stem, source })
 }
 

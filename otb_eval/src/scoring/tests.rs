@@ -8,7 +8,8 @@ use crate::toolkits::Toolkit;
 const BOX: Rect = Rect::new(10.0, 20.0, 30.0, 40.0);
 
 fn dataset(names: &[&str]) -> Dataset {
-    let target = |name: &&str| Target { name: (*name).into(), truth: vec![BOX; 60], frames: None };
+    let target =
+        |name: &&str| Target { name: (*name).into(), truth: vec![BOX; 60], hidden: vec![], frames: None };
     Dataset { targets: names.iter().map(target).collect() }
 }
 
@@ -65,7 +66,7 @@ fn sequences_and_seeds_are_averaged_and_attributes_grouped() {
 fn segments_are_pooled_by_their_frames() {
     let root = tempfile::tempdir().unwrap();
     let data = dataset(&["Walk"]);
-    let starts = starts_of(Protocol::Tre, &data.targets[0].truth).unwrap();
+    let starts = data.targets[0].starts(Protocol::Tre).unwrap();
     for (label, start) in &starts {
         let row = if *start == 0 { BOX } else { BOX.translated(500.0, 0.0) };
         put(root.path(), &format!("tre/ours/seed_1/Walk_{}.txt", label.as_ref().unwrap()), row, 60 - start);

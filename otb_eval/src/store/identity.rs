@@ -7,7 +7,7 @@ use serde_json::Value;
 use sha2::{Digest, Sha256};
 
 use super::{StoreError, whole::write_new};
-use crate::protocol::{Protocol, ShiftRules};
+use crate::protocol::{HiddenFrames, Protocol, ShiftRules};
 
 /// What decides the bytes of a tracker's results.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -19,6 +19,9 @@ pub struct Identity {
     /// Whose shifts SRE used; absent in other protocols.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shifts: Option<String>,
+    /// SHA-256 of the lists of hidden frames that TRE's starts kept away from; absent in other protocols.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub hidden_frames: Option<String>,
     /// The program that tracked, with its version.
     pub program: String,
     /// SHA-256 of the parameters' JSON, hexadecimal.
@@ -57,6 +60,7 @@ impl Identity {
         parameters: Value,
         protocol: Protocol,
         shift_rules: ShiftRules,
+        hidden: &HiddenFrames,
     ) -> Self {
         let shifts = match shift_rules {
             ShiftRules::Matlab => "matlab",
@@ -67,6 +71,7 @@ impl Identity {
             tracker: tracker.to_owned(),
             protocol,
             shifts: (protocol == Protocol::Sre).then(|| shifts.to_owned()),
+            hidden_frames: (protocol == Protocol::Tre).then(|| hidden.digest()),
             program,
             parameters_hash: digest.iter().map(|byte| format!("{byte:02x}")).collect(),
             parameters,
@@ -121,6 +126,10 @@ impl Identity {
         if self.shifts != there.shifts {
             let name = |shifts: &Option<String>| shifts.clone().unwrap_or_default();
             return format!("the shifts of {}, not of {}", name(&there.shifts), name(&self.shifts));
+        }
+        if self.hidden_frames != there.hidden_frames {
+            return "other starts: with other lists of hidden frames, or with none as older versions had it"
+                .to_owned();
         }
         let here = self.parameters.as_object();
         let changed = there.parameters.as_object().into_iter().flatten().find_map(|(key, value)| {

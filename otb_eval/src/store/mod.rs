@@ -1,6 +1,8 @@
-//! The folder of results: `RESULTS/PROTOCOL/TRACKER/seed_S/SEQ[_SEGMENT].txt`, times beside, and `run.json`.
+//! The folder of results: `RESULTS/PROTOCOL/TRACKER/seed_S/SEQ[_SEGMENT].txt`, times and a record beside, and `run.json`.
 
 mod identity;
+mod kept;
+mod record;
 mod whole;
 
 use std::{
@@ -14,6 +16,8 @@ use thiserror::Error;
 use crate::runner::{Job, Recording};
 
 pub use identity::{Identity, Machine};
+pub use kept::Kept;
+pub use record::Record;
 pub use whole::{remove_stale, write_whole};
 
 /// Results that cannot be kept or read.
@@ -21,7 +25,7 @@ pub use whole::{remove_stale, write_whole};
 #[non_exhaustive]
 pub enum StoreError {
     /// The file system refused.
-    #[error("{path}: {source}; choose another folder with --out, or make room", path = path.display())]
+    #[error("{path}: {source}; choose another folder, or make room", path = path.display())]
     Io {
         /// The file or folder.
         path: PathBuf,
@@ -37,12 +41,18 @@ pub enum StoreError {
         what: String,
     },
     /// `run.json` is not what this program writes.
-    #[error("{path}: {problem}; give another folder with --out, or remove that one", path = path.display())]
+    #[error("{path}: {problem}; remove that folder, or give another", path = path.display())]
     BadRunFile {
         /// The file.
         path: PathBuf,
         /// What is wrong with it.
         problem: String,
+    },
+    /// What stands beside a result is not what this program writes.
+    #[error("{path}: is no record of a result; remove it and the result beside it, and make the result again", path = path.display())]
+    BadRecord {
+        /// The file.
+        path: PathBuf,
     },
 }
 
@@ -70,17 +80,12 @@ impl Store {
     /// [`StoreError::OtherRun`] if results of other parameters, another version or other rules are there.
     pub fn claim(&self, identity: &Identity, machine: &Machine) -> Result<(), StoreError> {
         let folder = self.root.join(identity.protocol.name()).join(&identity.tracker);
-        fs::create_dir_all(&folder).map_err(|source| StoreError::Io { path: folder.clone(), source })?;
+        whole::create_folders(&folder).map_err(|source| StoreError::Io { path: folder.clone(), source })?;
         remove_stale(&folder).map_err(|source| StoreError::Io { path: folder.clone(), source })?;
         identity.claim(&folder, machine)
     }
 
-    /// Whether the job's result is there.
-    pub fn is_done(&self, job: &Job) -> bool {
-        self.root.join(job.result_path()).is_file()
-    }
-
-    /// Keeps a job's boxes and times, the boxes last, since they say that the job is done.
+    /// Keeps a job's boxes, times and record, the boxes last, since they say that the job is done.
     ///
     /// # Errors
     /// [`StoreError::Io`].
@@ -93,7 +98,9 @@ impl Store {
         for second in &recording.seconds {
             let _ = writeln!(seconds, "{second:.8}");
         }
+        let record = Record::new(rows.as_bytes(), recording.rows.len(), Some(job.segment.start));
         self.write(&job.time_path(), &seconds)?;
+        self.write(&Record::path(&job.result_path()), &record.text())?;
         self.write(&job.result_path(), &rows)?;
         self.forget_failure(job)
     }

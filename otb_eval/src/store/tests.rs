@@ -5,12 +5,19 @@ use infopart::geometry::Rect;
 use super::*;
 use crate::{
     dataset::FrameFolder,
-    protocol::{Protocol, Segment, ShiftRules},
+    protocol::{HiddenFrames, Protocol, Segment, ShiftRules},
 };
 
 fn identity(particles: u64, program: &str) -> Identity {
     let parameters = serde_json::json!({ "particles": particles, "stumps": 40 });
-    Identity::new("infopart", program.into(), parameters, Protocol::Ope, ShiftRules::Matlab)
+    Identity::new(
+        "infopart",
+        program.into(),
+        parameters,
+        Protocol::Ope,
+        ShiftRules::Matlab,
+        &HiddenFrames::default(),
+    )
 }
 
 fn job() -> Job {
@@ -37,12 +44,65 @@ fn results_stand_where_the_layout_says_with_every_digit() {
     store.keep_failure(&job(), "no luck").unwrap();
     let failure = folder.path().join("ope/infopart/seed_2/Crossing.failed.json");
     assert!(fs::read_to_string(&failure).unwrap().contains("no luck"));
-    assert!(!store.is_done(&job()));
+    assert_eq!(store.kept(&job()), Kept::Absent);
     store.keep(&job(), &recording).unwrap();
     let read = |name: &str| fs::read_to_string(folder.path().join("ope/infopart/seed_2").join(name)).unwrap();
     assert_eq!(read("Crossing.txt"), "1,2.5,3,4\n0.3333333333333333,-7,10.25,16\n");
     assert_eq!(read("Crossing_time.txt"), "0.25000000\n0.00123457\n");
-    assert!(store.is_done(&job()) && !failure.exists());
+    let record: Record = serde_json::from_str(&read("Crossing.result.json")).unwrap();
+    assert_eq!((record.first_row, record.rows), (Some(1), 2));
+    assert!(store.kept(&job()) == Kept::Whole && !failure.exists());
+}
+
+#[test]
+fn what_is_not_the_result_that_was_written_is_damaged() {
+    let folder = tempfile::tempdir().unwrap();
+    let store = Store::new(folder.path());
+    let boxes = folder.path().join("ope/infopart/seed_2/Crossing.txt");
+    let whole = "1,2.5,3,4\n2,2.5,3,45\n";
+    let recording = Recording {
+        rows: vec![Rect::new(1.0, 2.5, 3.0, 4.0), Rect::new(2.0, 2.5, 3.0, 45.0)],
+        seconds: vec![0.25, 0.5],
+    };
+    let damage = || match store.kept(&job()) {
+        Kept::Damaged(damage) => damage,
+        kept => format!("{kept:?}"),
+    };
+    for is_recorded in [true, false] {
+        store.keep(&job(), &recording).unwrap();
+        assert_eq!(fs::read_to_string(&boxes).unwrap(), whole);
+        if !is_recorded {
+            // As versions before left it.
+            fs::remove_file(Record::path(&boxes)).unwrap();
+        }
+        assert_eq!(store.kept(&job()), Kept::Whole);
+        for (text, needle) in [
+            ("", "is empty"),
+            ("\0\0\0\0", "line 1"),
+            ("1,2.5,3,4\n", if is_recorded { "checksum" } else { "1 rows, not 2" }),
+            ("1,2.5,3,4\n2,2.5,3,4", if is_recorded { "checksum" } else { "no end" }),
+            ("1,2.5,3,4\n2,2.5,x,4\n", "line 2"),
+            (
+                "9,2.5,3,4\n2,2.5,3,45\n",
+                if is_recorded { "checksum" } else { "the box that the tracker is given" },
+            ),
+        ] {
+            fs::write(&boxes, text).unwrap();
+            let damage = damage();
+            assert!(damage.contains(needle), "{text:?}: {damage}");
+        }
+    }
+    fs::write(&boxes, "1,2.5,3,4\n7,2.5,3,45\n").unwrap();
+    assert_eq!(store.kept(&job()), Kept::Whole, "without a record another box in a later row is not noticed");
+    store.keep(&job(), &recording).unwrap();
+    fs::write(folder.path().join("ope/infopart/seed_2/Crossing_time.txt"), "0.25\n").unwrap();
+    assert!(damage().contains("1 times, not 2"));
+    store.keep(&job(), &recording).unwrap();
+    fs::write(Record::path(&boxes), "{").unwrap();
+    assert!(damage().contains("no record of a result"));
+    let other = Job { segment: Segment { start: 1, ..job().segment }, ..job() };
+    store.keep(&job(), &recording).unwrap();
+    assert_eq!(store.kept(&other), Kept::Damaged("its run starts on another frame".into()));
 }
 
 #[test]
@@ -56,6 +116,7 @@ fn parameters_of_many_digits_are_the_same_when_they_are_read_back() {
         serde_json::json!({ "numbers": numbers }),
         Protocol::Ope,
         ShiftRules::Matlab,
+        &HiddenFrames::default(),
     );
     for _ in 0..2 {
         store.claim(&identity, &Machine::here(1, 1)).unwrap();

@@ -1,7 +1,8 @@
 //! Files that are there whole or not at all, whatever happens to their writer.
 //!
-//! A file grows under a temporary name that its writer holds locked, and is then renamed. A temporary file that nobody
-//! holds was left by a writer that was killed, and may be removed.
+//! A file grows under a temporary name that its writer holds locked, is brought to the disk, and is then renamed; then its
+//! folder is brought to the disk too, so that not even a loss of power leaves a file that is not whole. A temporary file
+//! that nobody holds was left by a writer that was killed, and may be removed.
 
 use std::{
     ffi::OsString,
@@ -19,15 +20,52 @@ const SUFFIX: &str = ".partial";
 /// What the file system says.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     if let Some(folder) = path.parent() {
-        fs::create_dir_all(folder)?;
+        create_folders(folder)?;
     }
     let (mut file, temporary) = temporary_beside(path)?;
-    let written = file.write_all(bytes).and_then(|()| fs::rename(&temporary, path));
+    let written = on_disk(&mut file, bytes).and_then(|()| fs::rename(&temporary, path));
     if written.is_err() {
         // The first failure is the one to tell.
         let _ = fs::remove_file(&temporary);
     }
-    written
+    written.and_then(|()| sync_folder_of(path))
+}
+
+fn on_disk(file: &mut File, bytes: &[u8]) -> io::Result<()> {
+    file.write_all(bytes).and_then(|()| file.sync_all())
+}
+
+/// A folder and those it is in, each entered on the disk.
+pub(super) fn create_folders(folder: &Path) -> io::Result<()> {
+    if folder.as_os_str().is_empty() || folder.is_dir() {
+        return Ok(());
+    }
+    if let Some(parent) = folder.parent() {
+        create_folders(parent)?;
+    }
+    match fs::create_dir(folder) {
+        // Another process was first.
+        Err(_) if folder.is_dir() => Ok(()),
+        Err(error) => Err(error),
+        Ok(()) => sync_folder_of(folder),
+    }
+}
+
+/// Brings the names in a file's folder to the disk. Not every file system can do that with a folder.
+fn sync_folder_of(path: &Path) -> io::Result<()> {
+    let folder = match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    if !cfg!(unix) {
+        return Ok(());
+    }
+    match File::open(folder)?.sync_all() {
+        Err(error) if matches!(error.kind(), io::ErrorKind::InvalidInput | io::ErrorKind::Unsupported) => {
+            Ok(())
+        }
+        other => other,
+    }
 }
 
 /// Writes a file only if there is none; `false` if there is one already.
@@ -36,8 +74,8 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
 /// What the file system says.
 pub(super) fn write_new(path: &Path, bytes: &[u8]) -> io::Result<bool> {
     let (mut file, temporary) = temporary_beside(path)?;
-    let linked = file.write_all(bytes).and_then(|()| fs::hard_link(&temporary, path));
-    let removed = fs::remove_file(&temporary);
+    let linked = on_disk(&mut file, bytes).and_then(|()| fs::hard_link(&temporary, path));
+    let removed = fs::remove_file(&temporary).and_then(|()| sync_folder_of(path));
     match linked {
         Err(error) if error.kind() == io::ErrorKind::AlreadyExists => Ok(false),
         Err(error) => Err(error),
@@ -121,14 +159,14 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = |i: usize| folder.path().join(format!("{i}.txt"));
         std::thread::scope(|scope| {
-            let writer = scope.spawn(|| (0..2000).try_for_each(|i| write_whole(&path(i), b"whole")));
+            let writer = scope.spawn(|| (0..500).try_for_each(|i| write_whole(&path(i), b"whole")));
             while !writer.is_finished() {
                 // A folder that changes while it is read may name files that are gone; nothing else may fail.
                 remove_stale(folder.path()).unwrap();
             }
             writer.join().unwrap().unwrap();
         });
-        assert!((0..2000).all(|i| path(i).exists()));
+        assert!((0..500).all(|i| path(i).exists()));
     }
 
     #[test]
