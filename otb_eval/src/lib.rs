@@ -15,3 +15,4 @@ pub mod runner;
 pub mod scoring;
 pub mod store;
 pub mod toolkits;
+mod words;

@@ -63,7 +63,12 @@ fn published_results_make_scores_comparisons_plots_and_a_page() {
         "MDNet, Twinnings",
         "STRUCK, ClifBar: the result has 329 rows",
     ];
-    let scores = scene.refuses(&published("score", &data), &short).stdout;
+    let listed = scene.accepts(&published("score", &data));
+    for needle in short {
+        assert!(listed.stderr.contains(&format!("defect: {needle}")), "{}", listed.stderr);
+    }
+    scene.refuses(&published("score --strict", &data), &short);
+    let scores = listed.stdout;
     let row = |name: &str| {
         let line = scores.lines().find(|line| line.starts_with(name)).unwrap().to_owned();
         line.split_whitespace().map(str::to_owned).collect::<Vec<_>>()

@@ -13,6 +13,7 @@ use super::{Finding, file_name};
 use crate::{
     catalogue,
     dataset::{FrameFolder, Target},
+    words::of_sequence,
 };
 
 /// Damaged images that are named; of more only the number is told.
@@ -55,7 +56,7 @@ impl Images {
         let images = match otb_images(&frames.path, rows) {
             Ok(images) => images,
             Err(error) => {
-                findings.push(Finding::damage(error.to_string()));
+                findings.push(Finding::damage(of_sequence(&error)));
                 return ImageSummary { count: 0, first: None, last: None, size: None };
             }
         };
@@ -73,7 +74,7 @@ impl Images {
         let decode = self.decode;
         let told = |error: SequenceError| match error {
             SequenceError::BadImage { reason, .. } => reason,
-            other => other.to_string(),
+            other => of_sequence(&other),
         };
         let probe = |path: &PathBuf| {
             if decode {

@@ -27,7 +27,7 @@ pub(super) fn written(frames: &FrameFolder, findings: &mut Vec<Finding>) -> Opti
     let own = targets.iter().find(|target| target.number == frames.target)?;
     let bytes = fs::read(&own.ground_truth).ok()?;
     let text = String::from_utf8_lossy(&bytes);
-    let Separators { comma, tab, space } = Separators::of(&text);
+    let Separators { comma, tab, space, .. } = Separators::of(&text);
     let found = [(comma, "comma"), (tab, "tab"), (space, "space")];
     let separators: Vec<&str> = found.iter().filter(|(there, _)| *there).map(|(_, name)| *name).collect();
     if separators.len() > 1 {

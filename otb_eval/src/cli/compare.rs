@@ -78,7 +78,7 @@ pub fn run(args: &CompareArgs) -> Result<()> {
     if let Some(path) = &args.json {
         write(path, format!("{}\n", serde_json::to_string_pretty(&outcome)?).as_bytes())?;
     }
-    problems.into_result()
+    problems.into_strict_result(args.scored.strict)
 }
 
 fn outcome(args: &CompareArgs, table: &Table) -> Result<Outcome> {

@@ -8,9 +8,10 @@ use infopart::program::BadInput;
 use otb_eval::{
     convert::{Layout, read, write},
     protocol::Protocol,
+    results::Results,
 };
 
-use super::inputs::Problems;
+use super::inputs::{Problems, note};
 
 pub const EXAMPLES: &str = "\
 Examples:
@@ -59,7 +60,19 @@ pub struct ConvertArgs {
 pub fn run(args: &ConvertArgs) -> Result<()> {
     let (mut tracks, unreadable) = read(args.from, &args.input)?;
     let mut problems = Problems::default();
-    unreadable.iter().for_each(|problem| problems.tell(problem));
+    for problem in &unreadable {
+        if problem.is_note() { note(&problem.to_string()) } else { problems.tell(problem) }
+    }
+    if args.from == Layout::Run {
+        let ignored = Results::ignored(&args.input)?;
+        if !ignored.is_empty() {
+            let input = args.input.display();
+            note(&format!(
+                "{input}: {} beside ope, tre or sre are left alone, for they are flat",
+                ignored.join(", ")
+            ));
+        }
+    }
     let mut there: Vec<String> = tracks.iter().map(|track| track.tracker.clone()).collect();
     there.sort();
     there.dedup();

@@ -18,7 +18,7 @@ const NAMED: usize = 3;
 /// Scores under every toolkit, what fails where, and what in the files they treat differently.
 pub fn text(dataset: &Dataset, results: &Results, scored: &[(Table, Vec<ScoreProblem>)]) -> String {
     let mut text = String::new();
-    for measure in [Measure::Auc, Measure::Precision, Measure::Normalised] {
+    for measure in [Measure::Auc, Measure::Precision, Measure::Normalised, Measure::NormalisedArea] {
         // Writing to a String cannot fail.
         let _ = writeln!(text, "{}\n{}", measure.title(), scores(scored, measure));
     }
@@ -130,7 +130,10 @@ fn reasons_in(dataset: &Dataset, tracker: &TrackerResults, protocol: Protocol) -
     for seed in &tracker.seeds {
         for target in &dataset.targets {
             for (label, by_rule) in segments_of(protocol, target, seed).unwrap_or_default() {
-                let Some(Ok(file)) = seed.read(&target.name, label.as_deref()) else { continue };
+                let Some(Ok(mut file)) = seed.read(&target.name, label.as_deref()) else { continue };
+                if protocol != Protocol::Tre {
+                    target.align(&mut file.rows);
+                }
                 let Some(start) = start_of(protocol, target, by_rule, &file) else { continue };
                 for reason in reasons(&target.truth[start..], &file.rows) {
                     let nothing = Found { reason, rows: 0, stems: Vec::new() };

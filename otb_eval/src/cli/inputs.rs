@@ -54,10 +54,13 @@ impl DataArgs {
     }
 }
 
-/// Problems of single sequences: told at once, and in the end the reason for exit code 2.
+/// Problems of single sequences: told at once, and in the end the reason for exit code 2. Defects of others' results are
+/// told too, and are a reason only if they are taken for problems.
 #[derive(Debug, Default)]
 pub struct Problems {
     told: Vec<String>,
+    problems: usize,
+    defects: usize,
 }
 
 /// Tells on standard error what is worth knowing and no problem.
@@ -79,6 +82,25 @@ impl Problems {
         let problem = printable(&problem.to_string());
         eprintln!("problem: {problem}");
         self.told.push(problem);
+        self.problems += 1;
+    }
+
+    /// Tells a defect of results that others made on standard error.
+    pub fn tell_defect(&mut self, defect: &dyn Display) {
+        let defect = printable(&defect.to_string());
+        eprintln!("defect: {defect}");
+        self.told.push(defect);
+        self.defects += 1;
+    }
+
+    /// An error if there was any problem or, if these count too, any defect.
+    pub fn into_strict_result(mut self, is_strict: bool) -> Result<()> {
+        if is_strict {
+            self.problems += self.defects;
+        } else if self.defects > 0 && self.problems == 0 {
+            note("everything was done; with --strict the defects above count as problems");
+        }
+        self.into_result()
     }
 
     /// Those told so far.
@@ -88,7 +110,7 @@ impl Problems {
 
     /// An error if there was any problem.
     pub fn into_result(self) -> Result<()> {
-        match self.told.len() {
+        match self.problems {
             0 => Ok(()),
             1 => Err(BadInput("1 problem, told above; everything else was done".into()).into()),
             count => Err(BadInput(format!("{count} problems, told above; everything else was done")).into()),

@@ -16,7 +16,7 @@ Examples:
 Written into DIR, for every protocol of which there are results, and for every attribute that some sequence has:
   success_ope.svg, .png, .csv       and precision_ope, normalised_precision_ope
   success_ope_OCC.svg, .png, .csv   and so on
-Legends rank trackers by AUC, by precision at 20 pixels, and by normalised precision.";
+Legends rank trackers by AUC, by precision at 20 pixels, and by normalised precision at 0.2.";
 
 #[derive(Debug, Args)]
 pub struct PlotArgs {
@@ -47,5 +47,5 @@ pub fn plot(args: &PlotArgs) -> Result<()> {
         }
     }
     eprintln!("{written} plots, each as SVG, PNG and CSV, in {}", args.out.display());
-    problems.into_result()
+    problems.into_strict_result(args.scored.strict)
 }

@@ -64,7 +64,7 @@ pub fn report(args: &ReportArgs) -> Result<()> {
     let html = page(&tables, options).html().context("the report cannot be made")?;
     write(&args.out, html.as_bytes())?;
     eprintln!("{}: {} kB", args.out.display(), html.len() / 1000);
-    problems.into_result()
+    problems.into_strict_result(args.scored.strict)
 }
 
 /// The command line as a shell takes it, without the flags that only say what the page says of other commands.

@@ -8,7 +8,10 @@ use std::{
 
 use anyhow::Result;
 use clap::Args;
-use infopart::output::{Destination, OutputError, StandardOutput, TextTable};
+use infopart::{
+    output::{Destination, OutputError, StandardOutput, TextTable},
+    program::BadInput,
+};
 use otb_eval::{
     protocol::Protocol,
     scoring::{Measure, ScoreProblem, Spread, Table, TrackerScores},
@@ -32,10 +35,14 @@ Where the six toolkits differ, and why; and the rules of one:
   otb_eval score --explain --toolkit got10k
 
 Only sequences count of which some tracker has a result, or those of --sequences; one without the result of another \
-tracker is named. Frames per second are updates alone, without init and decoding.
+tracker is named. Frames per second are updates alone, without init and decoding; under got10k the mean of every \
+frame's own, init among them. Normalised precision is quoted at 0.2, as pysot, stvir and pytracking print it.
 
-Exit codes: 0 success, 1 internal failure, 2 bad input, or something could not be scored (it is named, and everything \
-else is scored)";
+A result is rows of x,y,w,h. A header line, semicolons, a column of frame numbers or of scores, polygons and VOT's code for \
+the box given are read where they have one meaning, and told; anything else is refused with its line.
+
+Exit codes: 0 everything is scored, defects of others' results too, which are listed (--strict takes them for problems), \
+1 internal failure, 2 bad input, or something could not be scored (it is named, and everything else is scored)";
 
 #[derive(Debug, Args)]
 pub struct ScoreArgs {
@@ -47,7 +54,7 @@ pub struct ScoreArgs {
     /// Which results: ope, tre or sre
     #[arg(long, value_name = "ope|tre|sre", default_value = "ope")]
     protocol: Protocol,
-    /// What the tables by sequence and by attribute show: auc, precision, success, normalised or overlap
+    /// What the tables by sequence and by attribute show: auc, precision, success, normalised, normalised-area or overlap
     #[arg(long, value_name = "NAME", default_value = "auc")]
     measure: Measure,
     /// Write everything, curves too, as JSON
@@ -99,7 +106,7 @@ pub fn score(args: &ScoreArgs) -> Result<()> {
     if let Some(path) = &args.json {
         write_json(path, &scored)?;
     }
-    problems.into_result()
+    problems.into_strict_result(args.scored.strict)
 }
 
 /// Under six toolkits, the failures of some are a finding; what none can score is a problem, told once.
@@ -131,8 +138,15 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<()> {
 /// Prints to standard output.
 pub fn print(text: &str) -> Result<()> {
     let mut output = StandardOutput::new();
-    output.write_all(text.as_bytes()).map_err(|error| output.name_error(error))?;
-    Ok(output.complete()?)
+    let written = output.write_all(text.as_bytes()).map_err(|error| output.name_error(error));
+    written.and_then(|()| output.complete()).map_err(|error| match error {
+        OutputError::Closed => error.into(),
+        // The library's own words name a flag that not every command has.
+        other => BadInput(
+            other.to_string().replace("write to a file with --out", "make room, or send it elsewhere"),
+        )
+        .into(),
+    })
 }
 
 fn text_of(table: &Table, measure: Measure) -> String {

@@ -1,6 +1,9 @@
 //! What every command takes that scores results: data, results, trackers, rules.
 
-use std::{collections::BTreeMap, path::PathBuf};
+use std::{
+    collections::{BTreeMap, BTreeSet, HashSet},
+    path::PathBuf,
+};
 
 use anyhow::{Context, Result};
 use clap::{Args, ValueEnum};
@@ -8,13 +11,14 @@ use infopart::program::BadInput;
 use otb_eval::{
     catalogue::AttributeSource,
     dataset::Dataset,
+    figures::missing_protocols,
     protocol::Protocol,
-    results::Results,
-    scoring::{ScoreOptions, ScoreProblem, Table, score},
+    results::{Results, ResultsError},
+    scoring::{ScoreOptions, ScoreProblem, Table, Weight, score},
     toolkits::{Rules, Toolkit},
 };
 
-use super::inputs::{DataArgs, Problems};
+use super::inputs::{DataArgs, Problems, note};
 
 #[derive(Debug, Args)]
 pub struct ScoredArgs {
@@ -43,6 +47,10 @@ pub struct ScoredArgs {
     /// Undo the scaling of sre's scaled runs before comparing, as one of the benchmark's two codes does
     #[arg(long)]
     sre_undo_scale: bool,
+    /// Exit with 2 also where results that others made have defects, which are listed and scored as the rules have it:
+    /// rows too few or too many, or what the toolkit itself would fail on
+    #[arg(long)]
+    pub strict: bool,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -65,13 +73,33 @@ enum LostRows {
 /// seed that was not run lacks every segment.
 const NAMED: usize = 3;
 
-/// Tells what could not be scored: many sequences without ground truth, or many results that a seed lacks, in one line.
+/// Tells what could not be scored, or not as it stands. Many sequences without ground truth, many results that a seed lacks,
+/// and many results of a tracker with the same defect are told in one line.
 pub fn tell<'a>(unscored: impl IntoIterator<Item = &'a ScoreProblem>, problems: &mut Problems) {
     let mut without_truth = Vec::new();
     let mut missing: BTreeMap<(&str, u64), Vec<&'a ScoreProblem>> = BTreeMap::new();
+    let mut alike: BTreeMap<(Weight, &str, String), Vec<&'a ScoreProblem>> = BTreeMap::new();
     let mut others = Vec::new();
     for problem in unscored {
         match problem {
+            ScoreProblem::Lengths { tracker, .. } => {
+                let what = "the results have not as many rows as the ground truth".to_owned();
+                alike.entry((problem.weight(), tracker, what)).or_default().push(problem);
+            }
+            ScoreProblem::Crash { tracker, source, .. } => {
+                let what = format!("{} would fail: {}", source.toolkit(), source.cause());
+                alike.entry((problem.weight(), tracker, what)).or_default().push(problem);
+            }
+            ScoreProblem::Read { tracker, how, .. } => {
+                alike
+                    .entry((problem.weight(), tracker, format!("read with {how}")))
+                    .or_default()
+                    .push(problem);
+            }
+            ScoreProblem::Start { tracker, .. } => {
+                let what = "nothing tells where the runs start, and their rows do not fit the benchmark's starts; convert them from the published JSON or .mat files with this version, which keeps the starts".to_owned();
+                alike.entry((problem.weight(), tracker, what)).or_default().push(problem);
+            }
             ScoreProblem::NoTruth { .. } => without_truth.push(problem),
             ScoreProblem::Missing { tracker, seed, reason: None, .. } => {
                 missing.entry((tracker, *seed)).or_default().push(problem);
@@ -91,16 +119,28 @@ pub fn tell<'a>(unscored: impl IntoIterator<Item = &'a ScoreProblem>, problems: 
             )
         });
     }
-    others.iter().for_each(|problem| problems.tell(problem));
+    for ((_, tracker, what), group) in alike {
+        tell_folded(&group, problems, |named| format!("{tracker}, {named}: {what}"));
+    }
+    others.iter().for_each(|problem| tell_one(problem, problem.weight(), problems));
+}
+
+fn tell_one(told: &dyn std::fmt::Display, weight: Weight, problems: &mut Problems) {
+    match weight {
+        Weight::Note => note(&told.to_string()),
+        Weight::Defect => problems.tell_defect(told),
+        Weight::Problem => problems.tell(told),
+    }
 }
 
 /// Tells each problem of a kind, or where there are many all of them in a line, made from the names of a few.
 fn tell_folded(group: &[&ScoreProblem], problems: &mut Problems, line: impl Fn(&str) -> String) {
     if group.len() <= NAMED {
-        return group.iter().for_each(|problem| problems.tell(problem));
+        return group.iter().for_each(|problem| tell_one(problem, problem.weight(), problems));
     }
     let named: Vec<&str> = group.iter().take(NAMED).filter_map(|problem| problem.subject()).collect();
-    problems.tell(&line(&format!("{} and {} more", named.join(", "), group.len() - NAMED)));
+    let told = line(&format!("{} and {} more", named.join(", "), group.len() - NAMED));
+    tell_one(&told, group[0].weight(), problems);
 }
 
 impl ScoredArgs {
@@ -121,11 +161,27 @@ impl ScoredArgs {
 
     /// The results of a protocol, of the trackers asked for.
     pub fn open_results(&self, protocol: Protocol) -> Result<Results> {
+        self.tell_ignored()?;
         let results = Results::open(self.results()?, protocol).context("--results")?;
         Ok(match &self.trackers {
             Some(names) => results.only(names).context("--trackers")?,
             None => results,
         })
+    }
+
+    /// Tells of flat results beside those of `run`, which no command looks at.
+    fn tell_ignored(&self) -> Result<()> {
+        let path = self.results()?;
+        let ignored = Results::ignored(path).unwrap_or_default();
+        if !ignored.is_empty() {
+            note(&format!(
+                "{}: {} beside ope, tre or sre are left alone, for they are flat; `otb_eval convert {} OUT --from flat --to run` gives them the others' layout",
+                path.display(),
+                ignored.join(", "),
+                ignored.first().map(|name| path.join(name)).unwrap_or_default().display()
+            ));
+        }
+        Ok(())
     }
 
     /// The toolkit's rules with the options asked for.
@@ -168,7 +224,8 @@ impl ScoredArgs {
         Ok(score(dataset, results, &options))
     }
 
-    /// Scores every protocol asked for, or all there are, and tells what could not be scored.
+    /// Scores every protocol asked for, or all there are, and tells what could not be scored. Each table has the same
+    /// trackers in the same order; one without results of a protocol has no scores there, and that is told.
     pub fn tables(
         &self,
         dataset: &Dataset,
@@ -180,13 +237,36 @@ impl ScoredArgs {
             Some(protocol) => vec![protocol],
             None => Results::protocols(self.results()?).context("--results")?,
         };
-        let mut tables = Vec::new();
+        self.tell_ignored()?;
+        let mut opened = Vec::new();
         for protocol in protocols {
-            let results = self.open_results(protocol)?;
+            opened.push((protocol, Results::open(self.results()?, protocol).context("--results")?));
+        }
+        let names = self.names(&opened)?;
+        let mut tables = Vec::new();
+        for (protocol, results) in opened {
+            let results = results.with_trackers(&names);
             let (table, unscored) = self.score(dataset, &results, toolkit, protocol)?;
             tell(&unscored, problems);
             tables.push((results, table));
         }
+        missing_protocols(&tables).iter().for_each(|missing| note(missing));
         Ok(tables)
+    }
+
+    /// The trackers asked for, each of which has results of some protocol, or all that have.
+    fn names(&self, opened: &[(Protocol, Results)]) -> Result<Vec<String>> {
+        let all = opened.iter().flat_map(|(_, results)| &results.trackers);
+        let there: BTreeSet<String> = all.map(|tracker| tracker.name.clone()).collect();
+        let names = self.trackers.clone().unwrap_or_else(|| there.iter().cloned().collect());
+        let mut known = HashSet::new();
+        for name in &names {
+            if !there.contains(name) || !known.insert(name) {
+                let there = there.into_iter().collect::<Vec<_>>().join(", ");
+                let error = ResultsError::NoTracker { name: name.clone(), there };
+                return Err(error).context("--trackers");
+            }
+        }
+        Ok(names)
     }
 }

@@ -101,6 +101,13 @@ impl FromStr for Layout {
     }
 }
 
+impl ConvertError {
+    /// Whether it is only worth knowing, and nothing is left out.
+    pub fn is_note(&self) -> bool {
+        matches!(self, Self::Read { .. })
+    }
+}
+
 /// One tracker's result on one segment of one sequence.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Track {
@@ -150,6 +157,14 @@ pub enum ConvertError {
         path: PathBuf,
         /// What is wrong, and what to do.
         problem: String,
+    },
+    /// A file that was read, and is not as its layout has it.
+    #[error("{path}: read with {how}", path = path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What was understood.
+        how: String,
     },
     /// A protocol that the layout has no place for.
     #[error(

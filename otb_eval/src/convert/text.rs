@@ -9,7 +9,7 @@ use std::{
 use super::{ConvertError, Layout, OutputFile, Track, in_the_benchmarks_spelling, name_with_seed};
 use crate::{
     protocol::{Protocol, SHIFTS},
-    results::{Results, ResultsError, SeedResults},
+    results::{ResultFile, Results, ResultsError, SeedResults},
     runner::stem,
     store::Record,
 };
@@ -75,17 +75,26 @@ fn of_protocol(
         for seed in &tracker.seeds {
             for file in seed.stems() {
                 let (sequence, label) = split(file, protocol);
+                let at = || path.join(&tracker.name).join(format!("{file}.txt"));
                 match track_of(seed, &sequence, label.as_deref()) {
-                    Ok((rows, start, seconds)) => tracks.push(Track {
-                        tracker: tracker.name.clone(),
-                        protocol,
-                        seed: seed.seed,
-                        sequence: in_the_benchmarks_spelling(&sequence),
-                        label,
-                        start: start.filter(|_| protocol == Protocol::Tre),
-                        rows,
-                        seconds,
+                    Ok((result, _)) if result.first_is_given => problems.push(ConvertError::File {
+                        path: at(),
+                        problem: "its first line is VOT's code for the box given, which only the ground truth knows; write that box there"
+                            .to_owned(),
                     }),
+                    Ok((result, seconds)) => {
+                        problems.extend(result.read_as.map(|how| ConvertError::Read { path: at(), how }));
+                        tracks.push(Track {
+                            tracker: tracker.name.clone(),
+                            protocol,
+                            seed: seed.seed,
+                            sequence: in_the_benchmarks_spelling(&sequence),
+                            label,
+                            start: result.start.filter(|_| protocol == Protocol::Tre),
+                            rows: result.rows,
+                            seconds,
+                        });
+                    }
                     Err(problem) => problems.push(problem.into()),
                 }
             }
@@ -98,13 +107,14 @@ fn of_protocol(
     Ok(tracks)
 }
 
-/// Boxes, the row of the truth that they start on, and times.
-type Content = (Vec<infopart::geometry::Rect>, Option<usize>, Option<Vec<f64>>);
-
-fn track_of(seed: &SeedResults, sequence: &str, label: Option<&str>) -> Result<Content, ResultsError> {
-    let file = seed.read(sequence, label).transpose()?;
-    let (rows, start) = file.map(|file| (file.rows, file.start)).unwrap_or_default();
-    Ok((rows, start, seed.read_seconds(sequence, label).transpose()?))
+/// A result and its times.
+fn track_of(
+    seed: &SeedResults,
+    sequence: &str,
+    label: Option<&str>,
+) -> Result<(ResultFile, Option<Vec<f64>>), ResultsError> {
+    let file = seed.read(sequence, label).transpose()?.unwrap_or_default();
+    Ok((file, seed.read_seconds(sequence, label).transpose()?))
 }
 
 /// `SEQ_SEGMENT` into both.

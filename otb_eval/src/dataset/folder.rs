@@ -19,9 +19,18 @@ pub(super) fn read(path: &Path, problems: &mut Vec<DatasetError>) -> Result<Vec<
     let found: Vec<Target> =
         subfolders(path)?.iter().flat_map(|folder| targets_of(folder, problems)).collect();
     if found.is_empty() && problems.is_empty() {
-        return Err(DatasetError::NoSequences { path: path.to_owned() });
+        return Err(DatasetError::NoSequences { path: path.to_owned(), deeper: deeper(path) });
     }
     Ok(found)
+}
+
+/// Folders in a folder that hold sequences, where it holds none itself: it is one level too high.
+fn deeper(path: &Path) -> Vec<PathBuf> {
+    let holds = |folder: &PathBuf| {
+        let sequences = subfolders(folder).unwrap_or_default();
+        sequences.iter().any(|sequence| otb_targets(sequence).is_ok_and(|targets| !targets.is_empty()))
+    };
+    subfolders(path).unwrap_or_default().into_iter().filter(holds).collect()
 }
 
 /// Sorted, so that the order does not depend on the file system.
@@ -55,15 +64,21 @@ fn targets_of(folder: &Path, problems: &mut Vec<DatasetError>) -> Vec<Target> {
     targets
 }
 
-/// The benchmark leaves out the first frames of Tiger1; a copy that still has their rows is cut here.
 fn target(folder: &Path, found: OtbTarget, mut truth: Vec<infopart::geometry::Rect>) -> Target {
     let known = catalogue::find(&found.name);
-    let omitted = known.map_or(0, |known| truth.len().saturating_sub(known.rows).min(known.omitted_frames()));
-    truth.drain(..omitted);
+    let omitted = cut(known, &mut truth);
     Target {
         name: known.map_or(found.name, |known| known.name.to_owned()),
         truth,
         hidden: Vec::new(),
         frames: Some(FrameFolder { path: folder.to_owned(), target: found.number, first_frame: omitted + 1 }),
     }
+}
+
+/// The benchmark leaves out the first frames of Tiger1; a truth that still has their rows is cut here, and their number
+/// given.
+pub(super) fn cut(known: Option<&catalogue::Known>, truth: &mut Vec<infopart::geometry::Rect>) -> usize {
+    let omitted = known.map_or(0, |known| truth.len().saturating_sub(known.rows).min(known.omitted_frames()));
+    truth.drain(..omitted);
+    omitted
 }

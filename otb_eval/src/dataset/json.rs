@@ -5,7 +5,7 @@ use std::{collections::BTreeMap, fs, path::Path};
 use infopart::geometry::Rect;
 use serde::Deserialize;
 
-use super::{DatasetError, Target};
+use super::{DatasetError, Target, folder::cut};
 use crate::catalogue;
 
 #[derive(Deserialize)]
@@ -27,9 +27,12 @@ pub(super) fn read(path: &Path) -> Result<Vec<Target>, DatasetError> {
 fn target(name: String, entry: &Entry) -> Target {
     let number = |value: Option<f64>| value.unwrap_or(f64::NAN);
     let rect = |[x, y, w, h]: [Option<f64>; 4]| Rect::new(number(x), number(y), number(w), number(h));
+    let known = catalogue::find(&name);
+    let mut truth: Vec<Rect> = entry.gt_rect.iter().copied().map(rect).collect();
+    cut(known, &mut truth);
     Target {
-        name: catalogue::find(&name).map_or(name, |known| known.name.to_owned()),
-        truth: entry.gt_rect.iter().copied().map(rect).collect(),
+        name: known.map_or(name, |known| known.name.to_owned()),
+        truth,
         hidden: Vec::new(),
         frames: None,
     }

@@ -15,7 +15,11 @@ use std::{
 use infopart::{geometry::Rect, sequence::SequenceError};
 use thiserror::Error;
 
-use crate::protocol::{HiddenFrames, Protocol, ProtocolError, starts_of};
+use crate::{
+    catalogue,
+    protocol::{HiddenFrames, Protocol, ProtocolError, starts_of},
+    words::of_sequence,
+};
 
 /// A target whose true boxes are known.
 #[derive(Debug, Clone, PartialEq)]
@@ -53,16 +57,18 @@ pub struct Dataset {
 #[non_exhaustive]
 pub enum DatasetError {
     /// Nothing at a path.
-    #[error("{path}: no such file or folder; give a folder of OTB sequences, one sequence, or OTB100.json with --data", path = path.display())]
+    #[error("{path}: no such file or folder; give a folder of OTB sequences, one sequence, or OTB100.json", path = path.display())]
     Missing {
         /// The path as given.
         path: PathBuf,
     },
     /// A folder without sequences.
-    #[error("{path}: no OTB sequence there; each is a folder with img/ and groundtruth_rect.txt", path = path.display())]
+    #[error("{path}: no OTB sequence there; each is a folder with img/ and groundtruth_rect.txt{}", deeper_ones(deeper), path = path.display())]
     NoSequences {
         /// The path as given.
         path: PathBuf,
+        /// Folders in it that hold sequences.
+        deeper: Vec<PathBuf>,
     },
     /// A file or folder that cannot be read.
     #[error("{path}: cannot be read: {source}; check its permissions", path = path.display())]
@@ -73,7 +79,7 @@ pub enum DatasetError {
         source: std::io::Error,
     },
     /// A sequence that cannot be read; the others are.
-    #[error("{name}: {source}")]
+    #[error("{name}: {}", of_sequence(source))]
     Sequence {
         /// The folder's name.
         name: String,
@@ -89,13 +95,22 @@ pub enum DatasetError {
         problem: String,
     },
     /// Two targets of one name.
-    #[error("{name}: found twice, the second time in {path}; give only one of them with --data", path = path.display())]
+    #[error("{name}: found twice, the second time in {path}; give only one of them", path = path.display())]
     Twice {
         /// The target.
         name: String,
         /// Where it was found again.
         path: PathBuf,
     },
+}
+
+fn deeper_ones(folders: &[PathBuf]) -> String {
+    let names: Vec<String> = folders.iter().map(|folder| folder.display().to_string()).collect();
+    if names.is_empty() {
+        String::new()
+    } else {
+        format!(". There are some in {}: give those", names.join(", "))
+    }
 }
 
 impl Dataset {
@@ -131,6 +146,17 @@ impl Dataset {
 }
 
 impl Target {
+    /// Takes from a result the rows of frames that the benchmark leaves out (the first five of Tiger1), where it has them
+    /// and the truth has not, and gives their number: got10k and VOT track all 354 frames, the benchmark 349.
+    pub fn align(&self, rows: &mut Vec<Rect>) -> usize {
+        let omitted = catalogue::find(&self.name).map_or(0, catalogue::Known::omitted_frames);
+        if omitted == 0 || rows.len() != self.truth.len() + omitted {
+            return 0;
+        }
+        rows.drain(..omitted);
+        omitted
+    }
+
     /// The label of each segment of a protocol and the row of the truth, counted from 0, where it starts.
     ///
     /// # Errors

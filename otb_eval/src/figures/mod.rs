@@ -10,7 +10,7 @@ use crate::{
     toolkits::Curves,
 };
 
-pub use page::{PageOptions, page};
+pub use page::{PageOptions, missing_protocols, page};
 pub use strips::{StripProblem, strips};
 
 /// A plot and the name of its files.
@@ -24,7 +24,7 @@ pub struct NamedPlot {
 
 /// Success, precision and, where the toolkit has it, normalised precision over all sequences, and then success and
 /// precision over the sequences of each attribute. The legends rank trackers by AUC, by precision at 20 pixels and by
-/// normalised precision.
+/// normalised precision at 0.2.
 pub fn plots(table: &Table) -> Vec<NamedPlot> {
     let protocol = table.protocol;
     let all = |one: &TrackerScores| one.curves.clone();
@@ -70,7 +70,7 @@ fn precision(table: &Table, title: &str, of: impl Fn(&TrackerScores) -> Option<C
 }
 
 fn normalised(table: &Table, title: &str, of: impl Fn(&TrackerScores) -> Option<Curves>) -> Option<Plot> {
-    let y = |curves: &Curves| Some((curves.normalised_precision()?, curves.normalised?.to_vec()));
+    let y = |curves: &Curves| Some((curves.normalised_precision_at_02()?, curves.normalised?.to_vec()));
     let curves = curves(table, of, |index| index as f64 / 100.0, y);
     let title = format!("Normalised precision plots of {title}");
     (!curves.is_empty()).then(|| normalised_precision_plot(title, curves))

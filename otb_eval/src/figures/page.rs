@@ -27,24 +27,28 @@ pub struct PageOptions {
     pub strips: Vec<Strip>,
 }
 
-/// The page of some protocols' scores, all of the same trackers and in the same order.
+/// The page of some protocols' scores, all of the same trackers in the same order, some of them without results in a
+/// protocol, which the page says.
 pub fn page(tables: &[(Results, Table)], options: PageOptions) -> Report {
-    let Some((results, first)) = tables.first() else { return Report::default() };
+    let Some((_, first)) = tables.first() else { return Report::default() };
+    let missing = missing_protocols(tables);
+    let failures = failures(tables, options.problems);
+    let (versions, trackers) = (versions(tables), trackers(tables));
     let tables: Vec<&Table> = tables.iter().map(|(_, table)| table).collect();
     Report {
         title: options.title,
         subtitle: subtitle(&tables),
         made: None,
-        versions: versions(results),
-        trackers: results.trackers.iter().map(tracker).collect(),
+        versions,
+        trackers,
         commands: options.commands,
         overall: tables.iter().map(|table| overall(table)).collect(),
         plots: tables.iter().flat_map(|table| groups(table)).collect(),
         attributes: tables.iter().flat_map(|table| chart(table)).collect(),
         sequences: tables.iter().flat_map(|table| by_sequence(table)).collect(),
         strips: options.strips,
-        failures: failures(results, options.problems),
-        notes: notes(first),
+        failures,
+        notes: missing.into_iter().chain(notes(first)).collect(),
     }
 }
 
@@ -56,9 +60,33 @@ fn subtitle(tables: &[&Table]) -> String {
     format!("{protocols}: {trackers} trackers on {sequences} sequences, under the rules of {toolkit}")
 }
 
-fn versions(results: &Results) -> Vec<(String, String)> {
+/// What is missing: the trackers that have no results of a protocol of which others have some, a line a protocol.
+pub fn missing_protocols(tables: &[(Results, Table)]) -> Vec<String> {
+    let line = |(results, table): &(Results, Table)| {
+        let without = results.trackers.iter().filter(|tracker| tracker.seeds.is_empty());
+        let names: Vec<&str> = without.map(|tracker| tracker.name.as_str()).collect();
+        (!names.is_empty()).then(|| format!("{}: no results of {}", table.protocol.title(), names.join(", ")))
+    };
+    tables.iter().filter_map(line).collect()
+}
+
+/// Each tracker as the first protocol has it that `run` ran it on, or as it is.
+fn first_runs(tables: &[(Results, Table)]) -> Vec<&TrackerResults> {
+    let of = |place: usize| {
+        let mut all = tables.iter().map(|(results, _)| &results.trackers[place]);
+        all.clone().find(|tracker| tracker.run.is_some()).or_else(|| all.next())
+    };
+    let places = tables.first().map_or(0, |(results, _)| results.trackers.len());
+    (0..places).filter_map(of).collect()
+}
+
+fn trackers(tables: &[(Results, Table)]) -> Vec<Tracker> {
+    first_runs(tables).into_iter().map(tracker).collect()
+}
+
+fn versions(tables: &[(Results, Table)]) -> Vec<(String, String)> {
     let mut versions = vec![("scored by".to_owned(), format!("otb_eval {}", infopart::VERSION))];
-    for tracker in &results.trackers {
+    for tracker in first_runs(tables) {
         if let Some((identity, machine)) = &tracker.run {
             let processor = machine.processor.as_deref().unwrap_or("unknown processor");
             let hash: String = identity.parameters_hash.chars().take(12).collect();
@@ -145,14 +173,16 @@ fn by_sequence(table: &Table) -> Vec<SequenceTable> {
     Measure::ALL.into_iter().map(of).filter(has_values).collect()
 }
 
-fn failures(results: &Results, problems: Vec<String>) -> Vec<Failure> {
+fn failures(tables: &[(Results, Table)], problems: Vec<String>) -> Vec<Failure> {
     let mut failures = Vec::new();
-    for tracker in &results.trackers {
-        for seed in &tracker.seeds {
-            failures.extend(seed.failures().map(|(stem, reason)| Failure {
-                job: format!("{}, seed {}, {stem}", tracker.name, seed.seed),
-                reason: reason.to_owned(),
-            }));
+    for (results, table) in tables {
+        for tracker in &results.trackers {
+            for seed in &tracker.seeds {
+                failures.extend(seed.failures().map(|(stem, reason)| Failure {
+                    job: format!("{}: {}, seed {}, {stem}", table.protocol.title(), tracker.name, seed.seed),
+                    reason: reason.to_owned(),
+                }));
+            }
         }
     }
     failures.extend(problems.into_iter().map(|reason| Failure { job: "scoring".to_owned(), reason }));
@@ -163,6 +193,6 @@ fn notes(table: &Table) -> Vec<String> {
     let rules = table.toolkit.rules().explain();
     let mut notes: Vec<String> =
         rules.lines().map(|line| line.split_whitespace().collect::<Vec<_>>().join(" ")).collect();
-    notes.push("A score is the mean over seeds; ± is the standard deviation over them. Frames per second are updates alone, without decoding and init.".to_owned());
+    notes.push("A score is the mean over seeds; ± is the standard deviation over them. Frames per second are as the line frames/s says, without decoding.".to_owned());
     notes
 }

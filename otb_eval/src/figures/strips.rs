@@ -15,6 +15,7 @@ use crate::{
     report::{Strip, StripFrame},
     results::Results,
     scoring::Table,
+    words::of_sequence,
 };
 
 /// Frames of a sequence that are shown.
@@ -28,7 +29,7 @@ const JPEG_QUALITY: u8 = 78;
 #[non_exhaustive]
 pub enum StripProblem {
     /// The frames of a sequence cannot be read.
-    #[error("{sequence}: {source}")]
+    #[error("{sequence}: {}", of_sequence(source))]
     Frames {
         /// The sequence.
         sequence: String,
@@ -66,7 +67,9 @@ fn strip(target: &Target, folder: &FrameFolder, results: &Results) -> Result<Str
         .iter()
         .map(|tracker| {
             let first = tracker.seeds.first().and_then(|seed| seed.read(&target.name, None));
-            first.and_then(Result::ok).map(|file| file.rows).unwrap_or_default()
+            let mut rows = first.and_then(Result::ok).map(|file| file.rows).unwrap_or_default();
+            target.align(&mut rows);
+            rows
         })
         .collect();
     let mut frames = Vec::new();

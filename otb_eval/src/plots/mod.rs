@@ -119,14 +119,14 @@ pub fn precision_plot(title: impl Into<String>, curves: Vec<Curve>) -> Plot {
 }
 
 /// A normalised precision plot: share of frames whose centre error, divided by the true box's sides, is at most a
-/// threshold of 0 to 0.5.
+/// threshold of 0 to 0.5; marked at the 0.2 that it is quoted at.
 pub fn normalised_precision_plot(title: impl Into<String>, curves: Vec<Curve>) -> Plot {
     Plot {
         title: title.into(),
         x_label: "Normalised location error threshold".into(),
         y_label: "Normalised precision".into(),
         x_max: 0.5,
-        mark: None,
+        mark: Some(0.2),
         curves,
     }
 }

@@ -5,13 +5,13 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use infopart::{geometry::Rect, sequence::parse_boxes};
+use infopart::geometry::Rect;
 
-use super::ResultsError;
+use super::{ResultsError, rows};
 use crate::store::Record;
 
 /// A tracker's boxes on a sequence.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct ResultFile {
     /// A row a frame, as they stand in the file, odd ones among them.
     pub rows: Vec<Rect>,
@@ -19,6 +19,10 @@ pub struct ResultFile {
     pub separators: Separators,
     /// The row of the truth, counted from 0, that the first row is of, if a record beside the file tells.
     pub start: Option<usize>,
+    /// How the file was read, if not as plain `x,y,w,h` rows.
+    pub read_as: Option<String>,
+    /// Whether the first row, which is NaN then, stands for the box that the tracker was given, whatever it is.
+    pub first_is_given: bool,
 }
 
 /// What stands between the numbers of a file. Toolkits' readers take only some.
@@ -30,11 +34,13 @@ pub struct Separators {
     pub tab: bool,
     /// A space between numbers somewhere without a comma.
     pub space: bool,
+    /// Something else than rows of `x,y,w,h`, or semicolons.
+    pub other: bool,
 }
 
 impl ResultFile {
-    /// Reads a file of `x,y,w,h` rows, separated by commas, tabs or spaces, and checks it by the record beside it, if there is
-    /// one.
+    /// Reads a file of `x,y,w,h` rows, separated by commas, tabs or spaces, or of another form with one meaning, and checks
+    /// it by the record beside it, if there is one.
     ///
     /// # Errors
     /// [`ResultsError`], naming the file and line.
@@ -42,7 +48,7 @@ impl ResultFile {
         let bytes = fs::read(path).map_err(|source| ResultsError::Io { path: path.to_owned(), source })?;
         let record = Record::beside(path)?;
         let text = String::from_utf8_lossy(&bytes);
-        let rows = parse_boxes(&text, path)?;
+        let rows::Rows { rows, read_as, first_is_given } = rows::parse(&text, path)?;
         if rows.is_empty() {
             return Err(ResultsError::Empty { path: path.to_owned() });
         }
@@ -50,7 +56,8 @@ impl ResultFile {
             return Err(ResultsError::Altered { path: path.to_owned(), record: Record::path(path) });
         }
         let start = record.and_then(|record| record.start());
-        Ok(Self { rows, separators: Separators::of(&text), start })
+        let separators = Separators { other: read_as.is_some(), ..Separators::of(&text) };
+        Ok(Self { rows, separators, start, read_as, first_is_given })
     }
 }
 
@@ -59,7 +66,12 @@ impl Separators {
     pub fn of(text: &str) -> Self {
         let comma = text.contains(',');
         let is_spaced = |line: &str| line.trim().contains(' ') && !line.contains([',', '\t']);
-        Self { comma, tab: text.contains('\t'), space: text.contains(' ') && text.lines().any(is_spaced) }
+        Self {
+            comma,
+            tab: text.contains('\t'),
+            space: text.contains(' ') && text.lines().any(is_spaced),
+            other: false,
+        }
     }
 }
 

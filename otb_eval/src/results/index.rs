@@ -14,13 +14,29 @@ use crate::{catalogue, protocol::Protocol, store::Identity};
 /// Files beside results that are none.
 const NOT_RESULTS: [&str; 2] = ["_time", "_object_presence_scores"];
 
+/// How files of ground truth are called, which lie in folders as results do.
+const TRUTH: &str = "groundtruth";
+
 pub(super) fn protocols_in(path: &Path) -> Result<Vec<Protocol>, ResultsError> {
     if !path.is_dir() {
         return Err(ResultsError::Missing { path: path.to_owned() });
     }
     let own: Vec<Protocol> =
         Protocol::ALL.into_iter().filter(|protocol| path.join(protocol.name()).is_dir()).collect();
-    Ok(if own.is_empty() { vec![Protocol::Ope] } else { own })
+    Ok(match (own.is_empty(), one_protocol(path)) {
+        (false, _) => own,
+        (true, Some(protocol)) => vec![protocol],
+        (true, None) => vec![Protocol::Ope],
+    })
+}
+
+/// The protocol whose folder of `run` this is itself: one level too low, but clear.
+fn one_protocol(path: &Path) -> Option<Protocol> {
+    let protocol = path.file_name()?.to_str()?.parse().ok()?;
+    let has_seeds = |(_, tracker): (String, PathBuf)| {
+        folders_in(&tracker).is_ok_and(|seeds| seeds.iter().any(|(name, _)| name.starts_with("seed_")))
+    };
+    folders_in(path).ok()?.into_iter().any(has_seeds).then_some(protocol)
 }
 
 pub(super) fn results_in(path: &Path, protocol: Protocol) -> Result<Results, ResultsError> {
@@ -41,9 +57,34 @@ pub(super) fn results_in(path: &Path, protocol: Protocol) -> Result<Results, Res
         trackers.extend(tracker_in(name, &root)?);
     }
     if trackers.is_empty() {
-        return Err(ResultsError::Nothing { path: path.to_owned() });
+        return Err(ResultsError::Nothing { path: path.to_owned(), deeper: deeper(path) });
     }
     Ok(Results { trackers })
+}
+
+/// Folders in a folder that hold results, where it holds none itself: it is one level too high.
+fn deeper(path: &Path) -> Vec<PathBuf> {
+    let holds = |folder: &PathBuf| {
+        Protocol::ALL.iter().any(|protocol| folder.join(protocol.name()).is_dir())
+            || folders_in(folder).is_ok_and(|trackers| trackers.into_iter().any(is_tracker))
+    };
+    let folders = folders_in(path).unwrap_or_default().into_iter().map(|(_, folder)| folder);
+    folders.filter(holds).collect()
+}
+
+fn is_tracker((name, folder): (String, PathBuf)) -> bool {
+    tracker_in(name, &folder).is_ok_and(|tracker| tracker.is_some())
+}
+
+/// Folders of flat results beside those of `run`.
+pub(super) fn ignored_in(path: &Path) -> Result<Vec<String>, ResultsError> {
+    let is_protocol = |name: &str| Protocol::ALL.iter().any(|protocol| protocol.name() == name);
+    let (protocols, others): (Vec<_>, Vec<_>) =
+        folders_in(path)?.into_iter().partition(|(name, _)| is_protocol(name));
+    if protocols.is_empty() {
+        return Ok(Vec::new());
+    }
+    Ok(others.into_iter().filter(|one| is_tracker(one.clone())).map(|(name, _)| name).collect())
 }
 
 /// A tracker's folder: seeds in it, or results themselves; `None` if neither is there.
@@ -74,6 +115,7 @@ fn seed_in(seed: u64, folder: &Path) -> Result<SeedResults, ResultsError> {
         } else if let Some(stem) = name.strip_suffix(".txt")
             && !NOT_RESULTS.iter().any(|other| stem.ends_with(other))
             && !stem.starts_with('.')
+            && !stem.starts_with(TRUTH)
         {
             files.insert(in_the_benchmarks_spelling(stem), path);
         }

@@ -2,19 +2,20 @@
 
 mod file;
 mod index;
+mod rows;
 
 use std::{
     collections::BTreeMap,
     path::{Path, PathBuf},
 };
 
-use infopart::sequence::SequenceError;
 use thiserror::Error;
 
 use crate::{
     protocol::Protocol,
     runner::stem,
     store::{Identity, Machine, StoreError},
+    words::printable,
 };
 
 pub(crate) use file::read_seconds;
@@ -31,10 +32,12 @@ pub enum ResultsError {
         path: PathBuf,
     },
     /// A folder without results.
-    #[error("{path}: no results there; they are RESULTS/TRACKER/SEQ.txt or what `otb_eval run` wrote", path = path.display())]
+    #[error("{path}: no results there; they are RESULTS/TRACKER/SEQ.txt or what `otb_eval run` wrote{}", deeper_ones(deeper), path = path.display())]
     Nothing {
         /// The path as given.
         path: PathBuf,
+        /// Folders in it that hold results.
+        deeper: Vec<PathBuf>,
     },
     /// No results of a protocol.
     #[error("{path}: no results of {protocol} there, but of: {there}; choose one with --protocol", path = path.display())]
@@ -63,8 +66,17 @@ pub enum ResultsError {
         source: std::io::Error,
     },
     /// A row that is no box.
-    #[error(transparent)]
-    Rows(#[from] SequenceError),
+    #[error("{path}, line {line}: `{}` {problem}; write x,y,w,h there", printable(text), path = path.display())]
+    Row {
+        /// The file.
+        path: PathBuf,
+        /// The line, counted from 1.
+        line: usize,
+        /// The line as it stands, or its beginning.
+        text: String,
+        /// What is wrong with it.
+        problem: String,
+    },
     /// A file without rows.
     #[error("{path}: the file is empty; run the tracker on the sequence again, or remove the file", path = path.display())]
     Empty {
@@ -80,7 +92,7 @@ pub enum ResultsError {
         record: PathBuf,
     },
     /// A line of times that is no number.
-    #[error("{path}, line {line}: `{text}` is no time; write the seconds of a frame a line", path = path.display())]
+    #[error("{path}, line {line}: `{}` is no time; write the seconds of a frame a line", printable(text), path = path.display())]
     Time {
         /// The file.
         path: PathBuf,
@@ -92,6 +104,15 @@ pub enum ResultsError {
     /// `run.json` cannot be read.
     #[error(transparent)]
     Run(#[from] StoreError),
+}
+
+fn deeper_ones(folders: &[PathBuf]) -> String {
+    let names: Vec<String> = folders.iter().map(|folder| folder.display().to_string()).collect();
+    if names.is_empty() {
+        String::new()
+    } else {
+        format!(". There are some in {}: give that folder", names.join(", "))
+    }
 }
 
 /// All results in a folder.
@@ -138,6 +159,27 @@ impl Results {
     /// [`ResultsError::Missing`].
     pub fn protocols(path: &Path) -> Result<Vec<Protocol>, ResultsError> {
         index::protocols_in(path)
+    }
+
+    /// Folders of flat results, `TRACKER/SEQ.txt`, beside those of `run`, which are left alone; none in the flat layout.
+    ///
+    /// # Errors
+    /// [`ResultsError`] if the folder cannot be read.
+    pub fn ignored(path: &Path) -> Result<Vec<String>, ResultsError> {
+        index::ignored_in(path)
+    }
+
+    /// With exactly the trackers of these names, in this order: one that has no results has no seeds.
+    pub fn with_trackers(mut self, names: &[String]) -> Self {
+        let mut trackers = Vec::new();
+        for name in names {
+            let there = self.trackers.iter().position(|tracker| tracker.name == *name);
+            trackers.push(match there {
+                Some(position) => self.trackers.remove(position),
+                None => TrackerResults { name: name.clone(), run: None, seeds: Vec::new() },
+            });
+        }
+        Self { trackers }
     }
 
     /// Keeps only the trackers of these names, in this order.

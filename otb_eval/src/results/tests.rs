@@ -57,7 +57,7 @@ fn what_cannot_be_read_is_named_with_its_line() {
     let root = tempfile::tempdir().unwrap();
     put(root.path(), "T/Empty.txt", "\n");
     put(root.path(), "T/Letters.txt", "1,2,3,4\n1,b,3,4\n");
-    put(root.path(), "T/Wrong.txt", "1;2;3;4\n");
+    put(root.path(), "T/Wrong.txt", "1/2/3/4\n");
     put(root.path(), "T/Short.txt", "1,2,3\n");
     put(root.path(), "T/Good.txt", "1,2,3,4\n");
     put(root.path(), "T/Good_time.txt", "0.5\nfast\n");
@@ -74,5 +74,25 @@ fn what_cannot_be_read_is_named_with_its_line() {
     assert!(Results::open(&root.path().join("x"), Protocol::Ope).is_err());
     fs::create_dir(root.path().join("bare")).unwrap();
     let bare = Results::open(&root.path().join("bare"), Protocol::Ope).unwrap_err().to_string();
-    assert!(bare.contains("no results there"), "{bare}");
+    assert!(bare.contains("no results there") && !bare.contains("give that folder"), "{bare}");
+}
+
+#[test]
+fn a_folder_one_level_too_high_or_too_low_is_recognised() {
+    let root = tempfile::tempdir().unwrap();
+    put(root.path(), "OTB2015/KCF/Couple.txt", "1,2,3,4\n");
+    put(root.path(), "runs/tre/ours/seed_1/Couple_01.txt", "1,2,3,4\n");
+    put(root.path(), "data/Couple/groundtruth_rect.txt", "1,2,3,4\n");
+    let high = Results::open(root.path(), Protocol::Ope).unwrap_err().to_string();
+    assert!(
+        high.contains("OTB2015") && high.contains("runs: give that folder") && !high.contains("data,"),
+        "{high}"
+    );
+    let low = root.path().join("runs/tre");
+    assert_eq!(Results::protocols(&low).unwrap(), [Protocol::Tre]);
+    assert_eq!(Results::open(&low, Protocol::Tre).unwrap().trackers[0].name, "ours");
+    put(root.path(), "runs/KCF/Couple.txt", "1,2,3,4\n");
+    put(root.path(), "runs/plots/success.svg", "");
+    assert_eq!(Results::ignored(&root.path().join("runs")).unwrap(), ["KCF"]);
+    assert!(Results::ignored(&root.path().join("OTB2015")).unwrap().is_empty());
 }

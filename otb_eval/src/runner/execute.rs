@@ -13,6 +13,7 @@ use infopart::{
 };
 
 use super::{Job, TrackerFactory};
+use crate::words::{of_sequence, without_flags};
 
 /// What a job gives.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -54,7 +55,7 @@ pub fn execute(job: &Job, factory: &dyn TrackerFactory, stop: &AtomicBool) -> Re
 }
 
 fn track(job: &Job, factory: &dyn TrackerFactory, stop: &AtomicBool) -> Result<Recording, JobFailure> {
-    let failed = |error: &dyn std::fmt::Display| JobFailure::Failed(error.to_string());
+    let failed = |error: &dyn std::fmt::Display| JobFailure::Failed(without_flags(&error.to_string()));
     let first = job.first_frame();
     let options = OpenOptions {
         target: job.folder.target,
@@ -62,7 +63,8 @@ fn track(job: &Job, factory: &dyn TrackerFactory, stop: &AtomicBool) -> Result<R
         end: Some(first + job.frames - 1),
         origin: Some(Origin::One),
     };
-    let mut sequence = open(&job.folder.path.to_string_lossy(), &options).map_err(|error| failed(&error))?;
+    let mut sequence =
+        open(&job.folder.path.to_string_lossy(), &options).map_err(|error| failed(&of_sequence(&error)))?;
     let mut tracker = factory.create(job.seed).map_err(|error| failed(&error))?;
     let mut recording = Recording::default();
     let first_box = Origin::One.to_frame(job.segment.first_box);

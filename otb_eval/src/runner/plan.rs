@@ -9,6 +9,7 @@ use super::Job;
 use crate::{
     dataset::{Dataset, FrameFolder, Target},
     protocol::{Protocol, ProtocolError, ShiftRules, segments},
+    words::of_sequence,
 };
 
 /// What is to be run.
@@ -90,7 +91,7 @@ pub enum PlanProblem {
         source: ProtocolError,
     },
     /// Its first frame cannot be read.
-    #[error("{name}: {source}")]
+    #[error("{name}: {}", of_sequence(source))]
     Frames {
         /// The sequence.
         name: String,

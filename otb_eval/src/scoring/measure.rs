@@ -16,8 +16,10 @@ pub enum Measure {
     Precision,
     /// Success at an overlap of 0.5.
     Success,
-    /// Mean of the normalised precision curve.
+    /// Normalised precision at 0.2 of the true box's sides, as toolkits print it.
     Normalised,
+    /// Area under the normalised precision curve.
+    NormalisedArea,
     /// Mean overlap.
     Overlap,
 }
@@ -32,7 +34,8 @@ pub struct UnknownMeasure {
 
 impl Measure {
     /// All measures.
-    pub const ALL: [Self; 5] = [Self::Auc, Self::Precision, Self::Success, Self::Normalised, Self::Overlap];
+    pub const ALL: [Self; 6] =
+        [Self::Auc, Self::Precision, Self::Success, Self::Normalised, Self::NormalisedArea, Self::Overlap];
 
     /// The name in flags.
     pub const fn name(self) -> &'static str {
@@ -41,6 +44,7 @@ impl Measure {
             Self::Precision => "precision",
             Self::Success => "success",
             Self::Normalised => "normalised",
+            Self::NormalisedArea => "normalised-area",
             Self::Overlap => "overlap",
         }
     }
@@ -51,7 +55,8 @@ impl Measure {
             Self::Auc => "AUC",
             Self::Precision => "precision at 20 px",
             Self::Success => "success at 0.5",
-            Self::Normalised => "normalised precision",
+            Self::Normalised => "normalised precision at 0.2",
+            Self::NormalisedArea => "normalised precision, area",
             Self::Overlap => "mean overlap",
         }
     }
@@ -62,7 +67,8 @@ impl Measure {
             Self::Auc => Some(scores.auc),
             Self::Precision => Some(scores.precision_20),
             Self::Success => Some(scores.success_50),
-            Self::Normalised => scores.normalised_precision,
+            Self::Normalised => scores.normalised_precision_20,
+            Self::NormalisedArea => scores.normalised_precision_area,
             Self::Overlap => Some(scores.mean_overlap),
         }
     }
@@ -73,7 +79,8 @@ impl Measure {
             Self::Auc => Some(curves.auc()),
             Self::Precision => Some(curves.precision_at_20()),
             Self::Success => Some(curves.success_at_half()),
-            Self::Normalised => curves.normalised_precision(),
+            Self::Normalised => curves.normalised_precision_at_02(),
+            Self::NormalisedArea => curves.normalised_precision_area(),
             Self::Overlap => Some(curves.mean_overlap),
         }
     }

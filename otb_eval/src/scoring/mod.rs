@@ -25,7 +25,7 @@ use crate::{
 };
 
 pub use measure::{Measure, UnknownMeasure};
-pub use problem::ScoreProblem;
+pub use problem::{ScoreProblem, Weight};
 pub use segments::{Segment, segments_of, start_of};
 pub use speed::frames_per_second;
 pub use table::{AttributeScores, Scores, SequenceScores, Spread, Table, TrackerScores};
@@ -134,7 +134,7 @@ fn tracker_scores(
     let jobs: Vec<(&Target, &SeedResults)> =
         targets.iter().flat_map(|target| tracker.seeds.iter().map(move |seed| (*target, seed))).collect();
     let outcomes: Vec<_> =
-        jobs.par_iter().map(|(target, seed)| sequence::score(&tracker.name, seed, target, options)).collect();
+        jobs.par_iter().map(|(target, seed)| sequence::score(tracker, seed, target, options)).collect();
     let (mut curves, mut problems, mut speeds) = (Vec::new(), Vec::new(), Vec::new());
     for outcome in outcomes {
         speeds.push(outcome.frames_per_second);
@@ -142,11 +142,11 @@ fn tracker_scores(
         problems.extend(outcome.problems);
     }
     let seeds = tracker.seeds.len();
-    let rows: Vec<SequenceScores> = targets
-        .iter()
-        .zip(curves.chunks(seeds).zip(speeds.chunks(seeds)))
-        .map(|(target, (curves, speeds))| SequenceScores::new(&target.name, curves.to_vec(), speeds))
-        .collect();
+    let of_target = |(place, target): (usize, &&Target)| {
+        let own = place * seeds..(place + 1) * seeds;
+        SequenceScores::new(&target.name, curves[own.clone()].to_vec(), &speeds[own])
+    };
+    let rows: Vec<SequenceScores> = targets.iter().enumerate().map(of_target).collect();
     (TrackerScores::new(tracker, rows, attribute_sets(options.attributes), &options.rules), problems)
 }
 

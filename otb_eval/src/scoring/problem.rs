@@ -8,7 +8,18 @@ use crate::{
     toolkits::{Crash, Toolkit},
 };
 
-/// A result that could not be scored. Everything else is.
+/// How much it matters that something is not as it should be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Weight {
+    /// Worth knowing.
+    Note,
+    /// A defect of results that others made, which the rules have an answer to.
+    Defect,
+    /// Something to put right.
+    Problem,
+}
+
+/// A result that could not be scored, or not as it stands. Everything else is.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ScoreProblem {
@@ -48,7 +59,7 @@ pub enum ScoreProblem {
     },
     /// A result that has not a row a frame. It is scored all the same, as the toolkit does it.
     #[error(
-        "{tracker}, {stem}: the result has {result} rows and the ground truth {truth}; it is scored under the rules of {toolkit} (--explain); track the sequence again, or accept this with --missing-rows"
+        "{tracker}, {stem}: the result has {result} rows and the ground truth {truth}; it is scored under the rules of {toolkit}; track the sequence again, or accept this with --missing-rows"
     )]
     Lengths {
         /// The tracker.
@@ -59,8 +70,32 @@ pub enum ScoreProblem {
         result: usize,
         /// Rows of the ground truth.
         truth: usize,
+        /// Whether `run` made the result.
+        is_own: bool,
         /// Whose rules.
         toolkit: Toolkit,
+    },
+    /// A result with rows of frames that the benchmark leaves out. Without them it is scored.
+    #[error(
+        "{tracker}, {stem}: the result has rows of all frames, of which the benchmark leaves the first {dropped} out: row {} is compared with the ground truth's first", dropped + 1
+    )]
+    Aligned {
+        /// The tracker.
+        tracker: String,
+        /// `SEQ[_SEGMENT]`.
+        stem: String,
+        /// Rows left out.
+        dropped: usize,
+    },
+    /// A result that is not plain rows of `x,y,w,h`, and has one meaning all the same.
+    #[error("{tracker}, {stem}: read with {how}")]
+    Read {
+        /// The tracker.
+        tracker: String,
+        /// `SEQ[_SEGMENT]`.
+        stem: String,
+        /// What was understood.
+        how: String,
     },
     /// A run of TRE of which nothing tells on which frame it starts, so that it cannot be scored.
     #[error("{tracker}, {stem}: {}", start_problem(*start, *rows, *truth))]
@@ -102,16 +137,30 @@ fn start_problem(start: Option<usize>, rows: usize, truth: usize) -> String {
 }
 
 impl ScoreProblem {
+    /// How much it matters.
+    pub fn weight(&self) -> Weight {
+        match self {
+            Self::Aligned { .. } | Self::Read { .. } => Weight::Note,
+            Self::Lengths { is_own: false, .. } | Self::Crash { .. } => Weight::Defect,
+            _ => Weight::Problem,
+        }
+    }
+
     /// Whether it is only about a result's length, and the result is scored.
     pub fn is_length(&self) -> bool {
         matches!(self, Self::Lengths { .. })
     }
 
-    /// The sequence that has no ground truth, or the `SEQ[_SEGMENT]` that has no result; `None` for other problems.
+    /// The sequence that has no ground truth, or the `SEQ[_SEGMENT]` that it is about; `None` for other problems.
     pub fn subject(&self) -> Option<&str> {
         match self {
             Self::NoTruth { sequence } => Some(sequence),
-            Self::Missing { stem, .. } => Some(stem),
+            Self::Missing { stem, .. }
+            | Self::Start { stem, .. }
+            | Self::Lengths { stem, .. }
+            | Self::Aligned { stem, .. }
+            | Self::Read { stem, .. }
+            | Self::Crash { stem, .. } => Some(stem),
             _ => None,
         }
     }

@@ -1,10 +1,12 @@
 //! Step 1: one tracker with one seed on one sequence.
 
-use super::{ScoreOptions, ScoreProblem, Segment, frames_per_second, segments_of, start_of};
+use super::{
+    ScoreOptions, ScoreProblem, Segment, frames_per_second, segments_of, speed::mean_of_rates, start_of,
+};
 use crate::{
     dataset::Target,
-    protocol::unscaled,
-    results::{ResultFile, SeedResults},
+    protocol::{Protocol, unscaled},
+    results::{ResultFile, SeedResults, TrackerResults},
     runner::stem,
     toolkits::{Curves, Hits, evaluate},
 };
@@ -18,17 +20,19 @@ pub(super) struct SequenceOutcome {
 }
 
 pub(super) fn score(
-    tracker: &str,
+    tracker: &TrackerResults,
     seed: &SeedResults,
     target: &Target,
     options: &ScoreOptions,
 ) -> SequenceOutcome {
-    let (mut total, mut problems, mut seconds) = (None::<Hits>, Vec::new(), vec![0.0]);
-    let mut is_whole = true;
+    let (mut total, mut problems, mut is_whole) = (None::<Hits>, Vec::new(), true);
+    let (mut seconds, mut updates) = (Vec::new(), vec![0.0]);
+    let (is_own, tracker) = (tracker.run.is_some(), tracker.name.as_str());
     for segment in segments_of(options.protocol, target, seed).unwrap_or_default() {
         let label = segment.0.as_deref();
         match segment_hits(tracker, seed, target, &segment, options) {
-            Ok((hits, rows, start)) => {
+            Ok(Scored { hits, rows, start, notes }) => {
+                problems.extend(notes);
                 match &mut total {
                     Some(total) => total.merge(&hits),
                     None => total = Some(hits),
@@ -40,6 +44,7 @@ pub(super) fn score(
                         stem: stem(&target.name, label),
                         result: rows,
                         truth,
+                        is_own,
                         toolkit: options.rules.toolkit(),
                     });
                 }
@@ -50,7 +55,10 @@ pub(super) fn score(
             }
         }
         match seed.read_seconds(&target.name, label) {
-            Some(Ok(of_segment)) => seconds.extend(of_segment.into_iter().skip(1)),
+            Some(Ok(of_segment)) => {
+                updates.extend(of_segment.iter().skip(1));
+                seconds.extend(of_segment);
+            }
             Some(Err(source)) => {
                 problems.push(ScoreProblem::Unreadable { tracker: tracker.to_owned(), source });
             }
@@ -58,17 +66,27 @@ pub(super) fn score(
         }
     }
     let curves = total.filter(|_| is_whole).map(|hits| hits.curves(&options.rules));
-    SequenceOutcome { curves, frames_per_second: frames_per_second(&seconds), problems }
+    let frames_per_second =
+        if options.rules.mean_of_rates() { mean_of_rates(&seconds) } else { frames_per_second(&updates) };
+    SequenceOutcome { curves, frames_per_second, problems }
 }
 
-/// The segment's hits, the rows of its result, and the row of the truth where it starts.
+struct Scored {
+    hits: Hits,
+    /// Rows of the result.
+    rows: usize,
+    /// The row of the truth where it starts.
+    start: usize,
+    notes: Vec<ScoreProblem>,
+}
+
 fn segment_hits(
     tracker: &str,
     seed: &SeedResults,
     target: &Target,
     (label, by_rule): &Segment,
     options: &ScoreOptions,
-) -> Result<(Hits, usize, usize), ScoreProblem> {
+) -> Result<Scored, ScoreProblem> {
     let label = label.as_deref();
     let stem = stem(&target.name, label);
     let tracker = tracker.to_owned();
@@ -76,20 +94,35 @@ fn segment_hits(
         let reason = seed.failures().find(|(failed, _)| *failed == stem).map(|(_, reason)| reason.to_owned());
         return Err(ScoreProblem::Missing { tracker, stem, seed: seed.seed, reason });
     };
-    let file = match file {
+    let mut file = match file {
         Ok(file) => with_scale_undone(file, label, options),
         Err(source) => return Err(ScoreProblem::Unreadable { tracker, source }),
     };
+    let mut notes = Vec::new();
+    if let Some(how) = file.read_as.take() {
+        notes.push(ScoreProblem::Read { tracker: tracker.clone(), stem: stem.clone(), how });
+    }
+    if options.protocol != Protocol::Tre {
+        let dropped = target.align(&mut file.rows);
+        if dropped > 0 {
+            notes.push(ScoreProblem::Aligned { tracker: tracker.clone(), stem: stem.clone(), dropped });
+        }
+    }
     let Some(start) = start_of(options.protocol, target, *by_rule, &file) else {
         let (rows, truth) = (file.rows.len(), target.truth.len());
         return Err(ScoreProblem::Start { tracker, stem, start: file.start, rows, truth });
     };
     let truth = &target.truth[start..];
+    if file.first_is_given
+        && let (Some(first), Some(given)) = (file.rows.first_mut(), truth.first())
+    {
+        *first = *given;
+    }
     options
         .rules
         .check_separators(file.separators)
         .and_then(|()| evaluate(&options.rules, truth, &file.rows))
-        .map(|hits| (hits, file.rows.len(), start))
+        .map(|hits| Scored { hits, rows: file.rows.len(), start, notes })
         .map_err(|source| ScoreProblem::Crash { tracker, stem, source })
 }
 

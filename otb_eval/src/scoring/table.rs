@@ -83,10 +83,10 @@ pub struct Scores {
     pub precision_20: Spread,
     /// Share of frames with an overlap above 0.5.
     pub success_50: Spread,
-    /// Mean of the normalised precision curve; `None` where the toolkit has none.
-    pub normalised_precision: Option<Spread>,
-    /// Normalised precision at 0.2.
+    /// Normalised precision at 0.2, which toolkits print; `None` where the toolkit has none.
     pub normalised_precision_20: Option<Spread>,
+    /// Area under the normalised precision curve: the mean of its 51 values.
+    pub normalised_precision_area: Option<Spread>,
     /// Mean overlap.
     pub mean_overlap: Spread,
 }
@@ -121,8 +121,8 @@ impl Scores {
             auc: spread(Curves::auc),
             precision_20: spread(Curves::precision_at_20),
             success_50: spread(Curves::success_at_half),
-            normalised_precision: optional(Curves::normalised_precision),
             normalised_precision_20: optional(Curves::normalised_precision_at_02),
+            normalised_precision_area: optional(Curves::normalised_precision_area),
             mean_overlap: spread(|curves| curves.mean_overlap),
         })
     }

@@ -63,6 +63,17 @@ pub enum Crash {
 }
 
 impl Crash {
+    /// The toolkit that fails.
+    pub const fn toolkit(&self) -> Toolkit {
+        match self {
+            Self::Lengths { toolkit, .. }
+            | Self::BadBox { toolkit, .. }
+            | Self::NanTruth { toolkit, .. }
+            | Self::NoArea { toolkit, .. }
+            | Self::Separators { toolkit, .. } => *toolkit,
+        }
+    }
+
     /// What a toolkit fails on, without the place.
     pub const fn cause(&self) -> &'static str {
         match self {

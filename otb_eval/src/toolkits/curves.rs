@@ -158,12 +158,12 @@ impl Curves {
         self.success[HALF]
     }
 
-    /// Normalised precision: the plain mean of its 51 values.
-    pub fn normalised_precision(&self) -> Option<f64> {
+    /// Area under the normalised precision curve: the plain mean of its 51 values.
+    pub fn normalised_precision_area(&self) -> Option<f64> {
         self.normalised.map(|curve| curve.iter().sum::<f64>() / NORMALISED_THRESHOLDS as f64)
     }
 
-    /// Normalised precision at 0.2.
+    /// Normalised precision at 0.2, which toolkits print.
     pub fn normalised_precision_at_02(&self) -> Option<f64> {
         self.normalised.map(|curve| curve[NORMALISED_02])
     }

@@ -34,6 +34,8 @@ pub struct Rules {
     pub(super) least_sequences_of_an_attribute: usize,
     pub(super) attributes: Option<AttributeSource>,
     pub(super) normalisation: Option<Normalisation>,
+    /// Whether frames per second are the mean of each frame's, the first among them.
+    pub(super) mean_of_rates: bool,
     /// Whether its reader takes tabs and spaces besides commas.
     pub(super) takes: (bool, bool),
 }
@@ -151,6 +153,7 @@ impl Toolkit {
             least_sequences_of_an_attribute: 1,
             attributes: Some(AttributeSource::Tb100Txt),
             normalisation: Some(Normalisation::Sides),
+            mean_of_rates: false,
             takes: (true, true),
         };
         match self {
@@ -176,6 +179,7 @@ impl Toolkit {
                 valid_for_error: Validity::Any,
                 attributes: None,
                 normalisation: None,
+                mean_of_rates: true,
                 takes: (false, false),
                 ..plain
             },
@@ -235,6 +239,11 @@ impl Rules {
         self.attributes
     }
 
+    /// Whether frames per second are the mean of each frame's own, the first among them, as got10k has them.
+    pub fn mean_of_rates(&self) -> bool {
+        self.mean_of_rates
+    }
+
     /// How many sequences must have an attribute for it to be reported.
     pub fn least_sequences_of_an_attribute(&self) -> usize {
         self.least_sequences_of_an_attribute
@@ -267,6 +276,9 @@ impl Rules {
         }
         if found.space && !spaces {
             return Err(refused("spaces"));
+        }
+        if found.other && self.toolkit != Toolkit::Plain {
+            return Err(refused("semicolons, or other columns or lines than x,y,w,h"));
         }
         Ok(())
     }

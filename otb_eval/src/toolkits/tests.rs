@@ -125,7 +125,7 @@ fn normalised_precision_by_hand() {
         let curves = hits(toolkit, &truth, &result).curves(&toolkit.rules());
         let expected = (24.0 * 0.5 + 27.0) / 51.0;
         let by_rounding = 1.0 / 51.0;
-        assert!((curves.normalised_precision().unwrap() - expected).abs() <= by_rounding, "{toolkit}");
+        assert!((curves.normalised_precision_area().unwrap() - expected).abs() <= by_rounding, "{toolkit}");
         assert_eq!(curves.normalised_precision_at_02(), Some(0.5));
         assert_eq!(curves.normalised.unwrap()[26], 1.0);
     }

@@ -81,7 +81,37 @@ impl Scene {
         let code = output.status.code().unwrap_or(-1);
         let outcome = Outcome { code, stdout: text(output.stdout), stderr: text(output.stderr) };
         assert!(!outcome.stderr.contains("panicked"), "{line}: {}", outcome.stderr);
+        self.knows_its_flags(line, &outcome.stderr);
         outcome
+    }
+
+    /// That messages of a command name no flag that it lacks, but for those of other commands that they quote whole.
+    #[track_caller]
+    fn knows_its_flags(&self, line: &str, told: &str) {
+        let quoted_commands = |(place, part): (usize, &str)| place % 2 == 0 || !part.starts_with("otb_eval ");
+        let own: Vec<&str> =
+            told.split('`').enumerate().filter(|one| quoted_commands(*one)).map(|(_, part)| part).collect();
+        let is_flag = |word: &str| word.starts_with("--") && word.len() > 2;
+        let bare = |word: &str| {
+            word.split(|c: char| !(c.is_ascii_alphanumeric() || c == '-')).next().unwrap().to_owned()
+        };
+        let flags = |text: &str| -> std::collections::BTreeSet<String> {
+            let words = text.split(|c: char| c.is_whitespace() || "([`,:;".contains(c));
+            words.filter(|word| is_flag(word)).map(bare).collect()
+        };
+        let Some(command) = line.split_whitespace().next().filter(|command| !command.starts_with('-')) else {
+            return;
+        };
+        let named = flags(&own.join(" "));
+        if named.is_empty() {
+            return;
+        }
+        let help = self.command(&format!("{command} --help")).output().unwrap().stdout;
+        let known = flags(&String::from_utf8(help).unwrap());
+        let given = flags(line);
+        let lacking: Vec<&String> =
+            named.iter().filter(|flag| !known.contains(*flag) && !given.contains(*flag)).collect();
+        assert!(lacking.is_empty(), "{line}: `{command}` lacks {lacking:?}, which it names: {told}");
     }
 
     /// Runs the program, which must exit with 0.
