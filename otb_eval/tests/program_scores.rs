@@ -155,6 +155,11 @@ fn a_folder_too_high_is_named_with_the_one_to_give() {
     let scene = Scene::with_results();
     let line = "score --data boxes.json --results .";
     scene.refuses(line, &["no results there", "There are some in ./results: give that folder"]);
+    // Folders of other text beside it look like trackers, but nothing in them fits the data.
+    scene.write("above/results/good/Ann.txt", "10,20,30,40\n");
+    scene.write("above/meta/tb_100.txt", "10,20,30,40\n");
+    let line = "score --data boxes.json --results above";
+    scene.refuses(line, &["nothing there fits the data, but there are results in above/results"]);
     let walkers = Scene::with_walkers();
     fs::create_dir(walkers.path("above")).unwrap();
     fs::rename(walkers.path("data"), walkers.path("above/otb")).unwrap();

@@ -221,7 +221,20 @@ impl ScoredArgs {
             undo_scale: self.sre_undo_scale,
             accept_lengths: self.missing_rows.is_some(),
         };
-        Ok(score(dataset, results, &options))
+        let (table, unscored) = score(dataset, results, &options);
+        if table.sequences.is_empty() {
+            let path = self.results()?;
+            let deeper: Vec<String> =
+                Results::deeper(path).iter().map(|folder| folder.display().to_string()).collect();
+            if !deeper.is_empty() {
+                note(&format!(
+                    "{}: nothing there fits the data, but there are results in {}",
+                    path.display(),
+                    deeper.join(", ")
+                ));
+            }
+        }
+        Ok((table, unscored))
     }
 
     /// Scores every protocol asked for, or all there are, and tells what could not be scored. Each table has the same

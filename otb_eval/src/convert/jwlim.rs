@@ -25,7 +25,7 @@ struct Entry {
     #[serde(rename = "resType")]
     kind: Option<String>,
     #[serde(rename = "startFrame")]
-    start: Option<usize>,
+    start: Option<f64>,
     fps: Option<f64>,
     #[serde(rename = "tmplsize")]
     template: Option<Vec<f64>>,
@@ -76,7 +76,11 @@ fn read_file(path: &Path, tracker: &str, protocol: Protocol) -> Result<Vec<Track
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     let name = segments.iter().find_map(|segment| segment.sequence.as_deref()).unwrap_or(&stem);
     let sequence = in_the_benchmarks_spelling(name);
-    let first_frame = first_frame(&sequence, &segments);
+    let mut starts = Vec::new();
+    for (index, segment) in segments.iter().enumerate() {
+        starts.push(start_of(segment).map_err(|problem| wrong(format!("segment {}: {problem}", index + 1)))?);
+    }
+    let first_frame = first_frame(&sequence, &starts);
     let track = |(index, segment): (usize, Entry)| {
         let label = match protocol {
             Protocol::Ope => None,
@@ -90,7 +94,7 @@ fn read_file(path: &Path, tracker: &str, protocol: Protocol) -> Result<Vec<Track
         };
         let rows = boxes(&segment).map_err(wrong)?;
         let seconds = segment.fps.filter(|fps| *fps > 0.0).map(|fps| vec![fps.recip(); rows.len()]);
-        let start = segment.start.filter(|_| protocol == Protocol::Tre);
+        let start = starts[index].filter(|_| protocol == Protocol::Tre);
         let start = start.and_then(|start| start.checked_sub(first_frame));
         let (tracker, sequence) = (tracker.to_owned(), sequence.clone());
         Ok(Track { tracker, protocol, seed: 0, sequence, label, start, rows, seconds })
@@ -100,10 +104,21 @@ fn read_file(path: &Path, tracker: &str, protocol: Protocol) -> Result<Vec<Track
 
 /// The number that a file's segments have for the first row of the truth: that in the name of the frame's file, or 1 if
 /// one of them starts before that. The archive counts Tiger1 from 1, though its first file is 0006.
-fn first_frame(sequence: &str, segments: &[Entry]) -> usize {
+fn first_frame(sequence: &str, starts: &[Option<usize>]) -> usize {
     let in_files = catalogue::find(sequence).map_or(1, |known| known.first_frame);
-    let earliest = segments.iter().filter_map(|segment| segment.start).min();
+    let earliest = starts.iter().flatten().copied().min();
     if earliest.is_some_and(|earliest| earliest < in_files) { 1 } else { in_files }
+}
+
+/// The number of a segment's first frame, which some writers have as 1.0.
+fn start_of(segment: &Entry) -> Result<Option<usize>, String> {
+    let Some(start) = segment.start else { return Ok(None) };
+    let is_number = start.fract() == 0.0 && (1.0..1e9).contains(&start);
+    if is_number {
+        Ok(Some(start as usize))
+    } else {
+        Err(format!("startFrame is {start}, not the number of a frame"))
+    }
 }
 
 /// A segment's results as boxes.
@@ -174,7 +189,7 @@ fn file(mut segments: Vec<&Track>, tracks: &[Track]) -> OutputFile {
     segments.sort_by_key(|track| order(track));
     let tracker_folder = PathBuf::from(first.protocol.title()).join(name_with_seed(first, tracks));
     // Where nothing else is known every segment ends with the sequence, and the first begins with it.
-    let last = |track: &&Track| track.start.unwrap_or(0) + track.rows.len();
+    let last = |track: &&Track| track.start.unwrap_or(0).saturating_add(track.rows.len());
     let whole = segments.iter().map(last).max().unwrap_or(0);
     let entries: Vec<String> = segments.iter().map(|track| entry(track, whole)).collect();
     OutputFile {

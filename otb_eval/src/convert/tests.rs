@@ -200,8 +200,11 @@ fn published_starts_are_kept_however_their_frames_are_counted() {
     json("David", [(300, 4), (302, 2)]);
     json("Tiger1", [(1, 4), (3, 2)]);
     json("Mine", [(1, 4), (3, 2)]);
+    let fraction = one("Odd", 1, 2).replace("\"startFrame\": 1", "\"startFrame\": 1.5");
+    fs::write(root.path().join("TRE/T/Odd.json"), format!("[{fraction}]")).unwrap();
     let (tracks, problems) = read(Layout::Jwlim, root.path()).unwrap();
-    assert!(problems.is_empty() && tracks.len() == 8, "{problems:?}");
+    assert!(problems.len() == 1 && tracks.len() == 8, "{problems:?}");
+    assert!(problems[0].to_string().contains("Odd.json: segment 1: startFrame is 1.5"), "{problems:?}");
     for layout in [Layout::Run, Layout::Jwlim] {
         let back = round_trip(layout, &tracks);
         assert_eq!(back, tracks, "{layout}");

@@ -63,7 +63,7 @@ pub(super) fn results_in(path: &Path, protocol: Protocol) -> Result<Results, Res
 }
 
 /// Folders in a folder that hold results, where it holds none itself: it is one level too high.
-fn deeper(path: &Path) -> Vec<PathBuf> {
+pub(super) fn deeper(path: &Path) -> Vec<PathBuf> {
     let holds = |folder: &PathBuf| {
         Protocol::ALL.iter().any(|protocol| folder.join(protocol.name()).is_dir())
             || folders_in(folder).is_ok_and(|trackers| trackers.into_iter().any(is_tracker))

@@ -169,6 +169,11 @@ impl Results {
         index::ignored_in(path)
     }
 
+    /// Folders in a folder that hold results themselves: where nothing in it fits the data, it is one level too high.
+    pub fn deeper(path: &Path) -> Vec<PathBuf> {
+        index::deeper(path)
+    }
+
     /// With exactly the trackers of these names, in this order: one that has no results has no seeds.
     pub fn with_trackers(mut self, names: &[String]) -> Self {
         let mut trackers = Vec::new();
