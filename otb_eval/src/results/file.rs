@@ -1,7 +1,8 @@
 //! One result file, and the times beside it.
 
 use std::{
-    fs, io,
+    borrow::Cow,
+    fs,
     path::{Path, PathBuf},
 };
 
@@ -45,9 +46,14 @@ impl ResultFile {
     /// # Errors
     /// [`ResultsError`], naming the file and line.
     pub fn read(path: &Path) -> Result<Self, ResultsError> {
+        Self::with_record(path, Record::beside(path)?)
+    }
+
+    /// Reads a file and checks it by a record.
+    pub(super) fn with_record(path: &Path, record: Option<Record>) -> Result<Self, ResultsError> {
         let bytes = fs::read(path).map_err(|source| ResultsError::Io { path: path.to_owned(), source })?;
-        let record = Record::beside(path)?;
-        let text = String::from_utf8_lossy(&bytes);
+        // What is all text, as nearly every file is, is told fastest so.
+        let text = str::from_utf8(&bytes).map_or_else(|_| String::from_utf8_lossy(&bytes), Cow::Borrowed);
         let rows::Rows { rows, read_as, first_is_given } = rows::parse(&text, path)?;
         if rows.is_empty() {
             return Err(ResultsError::Empty { path: path.to_owned() });
@@ -75,20 +81,17 @@ impl Separators {
     }
 }
 
-/// The seconds beside a result: `SEQ_time.txt` there, or in a folder `times`, as got10k keeps them.
-pub(crate) fn read_seconds(result: &Path) -> Result<Option<Vec<f64>>, ResultsError> {
+/// The seconds beside a result, `SEQ_time.txt`; `None` if that is not there.
+pub(crate) fn seconds_beside(result: &Path) -> Result<Option<Vec<f64>>, ResultsError> {
     let stem = result.file_stem().unwrap_or_default().to_string_lossy();
-    let name = format!("{stem}_time.txt");
-    let beside = result.with_file_name(&name);
-    let in_folder = result.with_file_name("times").join(&name);
-    for path in [beside, in_folder] {
-        match fs::read_to_string(&path) {
-            Ok(text) => return parse_seconds(&text, &path).map(Some),
-            Err(error) if matches!(error.kind(), io::ErrorKind::NotFound | io::ErrorKind::NotADirectory) => {}
-            Err(source) => return Err(ResultsError::Io { path, source }),
-        }
-    }
-    Ok(None)
+    let path = result.with_file_name(format!("{stem}_time.txt"));
+    if path.exists() { read_seconds(&path).map(Some) } else { Ok(None) }
+}
+
+/// Reads a file of seconds, a frame a line.
+pub(super) fn read_seconds(path: &Path) -> Result<Vec<f64>, ResultsError> {
+    let text = fs::read(path).map_err(|source| ResultsError::Io { path: path.to_owned(), source })?;
+    parse_seconds(&String::from_utf8_lossy(&text), path)
 }
 
 fn parse_seconds(text: &str, path: &Path) -> Result<Vec<f64>, ResultsError> {

@@ -1,15 +1,19 @@
 //! Which result files there are.
 
 use std::{
-    collections::BTreeMap,
+    collections::{BTreeMap, HashSet},
     fs, io,
     path::{Path, PathBuf},
 };
 
 use serde::Deserialize;
 
-use super::{Results, ResultsError, SeedResults, TrackerResults};
-use crate::{catalogue, protocol::Protocol, store::Identity};
+use super::{Listed, Results, ResultsError, SeedResults, TrackerResults};
+use crate::{
+    catalogue,
+    protocol::Protocol,
+    store::{Identity, Record},
+};
 
 /// Files beside results that are none.
 const NOT_RESULTS: [&str; 2] = ["_time", "_object_presence_scores"];
@@ -108,16 +112,27 @@ fn tracker_in(name: String, folder: &Path) -> Result<Option<TrackerResults>, Res
 
 fn seed_in(seed: u64, folder: &Path) -> Result<SeedResults, ResultsError> {
     let (mut files, mut failures) = (BTreeMap::new(), BTreeMap::new());
-    for path in entries(folder)? {
+    let paths = entries(folder)?;
+    // As got10k keeps times.
+    let in_times = entries(&folder.join("times")).unwrap_or_default();
+    let there: HashSet<&Path> = paths.iter().chain(&in_times).map(PathBuf::as_path).collect();
+    for path in &paths {
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         if let Some(stem) = name.strip_suffix(".failed.json") {
-            failures.insert(stem.to_owned(), reason_in(&path)?);
+            failures.insert(stem.to_owned(), reason_in(path)?);
         } else if let Some(stem) = name.strip_suffix(".txt")
             && !NOT_RESULTS.iter().any(|other| stem.ends_with(other))
             && !stem.starts_with('.')
             && !stem.starts_with(TRUTH)
         {
-            files.insert(in_the_benchmarks_spelling(stem), path);
+            let name = format!("{stem}_time.txt");
+            let times = [folder.join(&name), folder.join("times").join(&name)];
+            let listed = Listed {
+                path: path.clone(),
+                has_record: there.contains(Record::path(path).as_path()),
+                times: times.into_iter().find(|path| there.contains(path.as_path())),
+            };
+            files.insert(in_the_benchmarks_spelling(stem), listed);
         }
     }
     Ok(SeedResults { seed, files, failures })

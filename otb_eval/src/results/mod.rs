@@ -14,11 +14,11 @@ use thiserror::Error;
 use crate::{
     protocol::Protocol,
     runner::stem,
-    store::{Identity, Machine, StoreError},
+    store::{Identity, Machine, Record, StoreError},
     words::printable,
 };
 
-pub(crate) use file::read_seconds;
+pub(crate) use file::seconds_beside;
 pub use file::{ResultFile, Separators};
 
 /// Results that cannot be used.
@@ -139,9 +139,17 @@ pub struct SeedResults {
     /// The seed; 0 in the flat layout, which knows none.
     pub seed: u64,
     /// Result files by the stem `SEQ[_SEGMENT]`, the sequence in the benchmark's spelling.
-    files: BTreeMap<String, PathBuf>,
+    files: BTreeMap<String, Listed>,
     /// Failed jobs by stem, with the reason.
     failures: BTreeMap<String, String>,
+}
+
+/// A result file and what the folder has beside it.
+#[derive(Debug, Clone)]
+struct Listed {
+    path: PathBuf,
+    has_record: bool,
+    times: Option<PathBuf>,
 }
 
 impl Results {
@@ -215,7 +223,11 @@ impl SeedResults {
     /// # Errors
     /// [`ResultsError`], naming the file and line.
     pub fn read(&self, sequence: &str, label: Option<&str>) -> Option<Result<ResultFile, ResultsError>> {
-        self.files.get(&stem(sequence, label)).map(|path| ResultFile::read(path))
+        let read = |Listed { path, has_record, .. }: &Listed| {
+            let record = if *has_record { Record::beside(path)? } else { None };
+            ResultFile::with_record(path, record)
+        };
+        self.files.get(&stem(sequence, label)).map(read)
     }
 
     /// Reads the seconds that each frame of a segment took, `init` first; `None` if that is not known.
@@ -227,8 +239,8 @@ impl SeedResults {
         sequence: &str,
         label: Option<&str>,
     ) -> Option<Result<Vec<f64>, ResultsError>> {
-        let path = self.files.get(&stem(sequence, label))?;
-        read_seconds(path).transpose()
+        let path = self.files.get(&stem(sequence, label))?.times.as_ref()?;
+        Some(file::read_seconds(path))
     }
 
     /// Stems `SEQ[_SEGMENT]` of all results.

@@ -4,7 +4,7 @@ use std::{fs, io};
 
 use super::{Record, Store};
 use crate::{
-    results::{ResultFile, read_seconds},
+    results::{ResultFile, seconds_beside},
     runner::Job,
 };
 
@@ -55,7 +55,7 @@ impl Store {
         if !is_recorded && !fs::read(&path).is_ok_and(|bytes| bytes.ends_with(b"\n")) {
             return Some("its last line has no end".to_owned());
         }
-        match read_seconds(&path) {
+        match seconds_beside(&path) {
             Ok(Some(seconds)) if seconds.len() != job.frames => {
                 Some(format!("there are {} times, not {}", seconds.len(), job.frames))
             }
