@@ -58,8 +58,8 @@ pub struct Evidence {
     pub mean_stump: f64,
     /// Squared distance of the part's HOG from the template's, in [0, 2].
     pub hog_distance: f64,
-    /// How far the correlation filter's peak stands above the rest of its window, in standard deviations of the rest; `None`
-    /// without the filter.
+    /// How far the place filters' peaks stand above the rest of the window, in standard deviations of the rest; their mean,
+    /// weighted as their responses are. `None` without the filters.
     pub peak_sharpness: Option<f64>,
     /// The lowest log-odds that a frame alone has given since the first, forgotten by 0.005 a frame: after a loss the target may
     /// be another. `None` without the filter.

@@ -1,5 +1,5 @@
-//! What particles are drawn from: the walk, mixed with a Gaussian around the place where the correlation filter peaks. The
-//! weights take p / q, so that the filter's view guides the particles without counting twice.
+//! What particles are drawn from: the walk, mixed with a Gaussian around the place that the cues over the window answer to. The
+//! weights take p / q, so that their view guides the particles without counting twice.
 
 use std::f64::consts::TAU;
 

@@ -167,3 +167,44 @@ fn cell_of(window: Window, side: usize, cell: usize) -> Rect {
     let Rect { x, y, .. } = window.to_rect();
     Rect::new(x + (cell % side) as f64 * length, y + (cell / side) as f64 * length, length, length)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::{Frame, PixelFormat};
+
+    const FULL: Rect = Rect { x: 60.0, y: 40.0, w: 40.0, h: 80.0 };
+
+    /// A figure in the left half of the box, before a background of another colour or of its own.
+    fn learnt(figure: [u8; 3], background: [u8; 3]) -> WindowView {
+        let is_figure = |x: usize, y: usize| (60..84).contains(&x) && (40..120).contains(&y);
+        let pixels =
+            (0..160 * 160).flat_map(|i| if is_figure(i % 160, i / 160) { figure } else { background });
+        let frame = Frame::new(pixels.collect(), 160, 160, PixelFormat::Rgb).unwrap();
+        let mut view = WindowView::new(&Parameters::default(), FULL);
+        view.see(&frame.view(), FULL);
+        view.learn(&frame.view(), FULL);
+        view
+    }
+
+    fn own_at(view: &WindowView, x: f64, y: f64) -> f32 {
+        let inside = |cell: &Rect| x >= cell.x && x < cell.right() && y >= cell.y && y < cell.bottom();
+        let side = view.side();
+        let cell = (0..side * side).find(|&cell| inside(&cell_of(view.window(), side, cell))).unwrap();
+        view.own_cells()[cell]
+    }
+
+    #[test]
+    fn cells_of_the_backgrounds_colour_are_not_the_targets_own_even_inside_the_box() {
+        let view = learnt([200, 30, 30], [30, 60, 200]);
+        assert_eq!(own_at(&view, 76.0, 80.0), 1.0);
+        for (x, y) in [(98.0, 44.0), (30.0, 80.0), (76.0, 20.0)] {
+            assert!((own_at(&view, x, y) - NOT_OWN).abs() < 1e-6, "{x} {y}: {}", own_at(&view, x, y));
+        }
+    }
+
+    #[test]
+    fn where_the_colours_tell_nothing_apart_every_cell_is_its_own() {
+        assert!(learnt([90, 90, 90], [90, 90, 90]).own_cells().iter().all(|own| *own == 1.0));
+    }
+}

@@ -8,6 +8,7 @@ mod place;
 mod size;
 
 use rand::Rng;
+use rayon::prelude::*;
 
 use crate::{
     features::{
@@ -76,32 +77,38 @@ pub(super) struct Cues {
     classifier: Classifier,
     gradients: Gradients,
     /// Those that look over a window; none in the method as printed.
-    window: Option<WindowCues>,
+    window: Option<Window>,
 }
 
-/// Cues that look over a window around the target, and what they share.
-struct WindowCues {
+/// The cues that look over a window around the target, what they share, and where they together answer.
+struct Window {
     view: WindowView,
-    place: Place,
-    size: Size,
-    colour: Colour,
-    /// Where they together answer.
+    cues: WindowCues,
     map: EvidenceMap,
 }
 
+/// The cues that look over a window.
+struct WindowCues {
+    place: Place,
+    size: Size,
+    colour: Colour,
+}
+
 impl WindowCues {
-    fn new(parameters: &Parameters, full: Rect) -> Self {
+    fn new(parameters: &Parameters, full: &Rect) -> Self {
         Self {
-            view: WindowView::new(parameters, full),
-            place: Place::new(parameters, &full),
-            size: Size::new(parameters, &full),
+            place: Place::new(parameters, full),
+            size: Size::new(parameters, full),
             colour: Colour::new(parameters),
-            map: EvidenceMap::default(),
         }
     }
 
     fn each(&self) -> [&dyn Cue; 3] {
         [&self.place, &self.size, &self.colour]
+    }
+
+    fn each_mut(&mut self) -> [&mut dyn Cue; 3] {
+        [&mut self.place, &mut self.size, &mut self.colour]
     }
 }
 
@@ -111,7 +118,11 @@ impl Cues {
         Self {
             classifier: Classifier::new(parameters, pool),
             gradients: Gradients::new(parameters, template),
-            window: (parameters.correlation_weight > 0.0).then(|| WindowCues::new(parameters, full)),
+            window: (parameters.correlation_weight > 0.0).then(|| Window {
+                view: WindowView::new(parameters, full),
+                cues: WindowCues::new(parameters, &full),
+                map: EvidenceMap::default(),
+            }),
         }
     }
 
@@ -129,10 +140,9 @@ impl Cues {
 
     /// Looks over the window last seen, around where the target was.
     pub fn look(&mut self, full: &Rect) {
-        let Some(WindowCues { view, place, size, colour, map }) = &mut self.window else { return };
-        let cues: [&mut dyn Cue; 3] = [place, size, colour];
-        cues.into_iter().for_each(|cue| cue.look(view));
-        let cues: [&dyn Cue; 3] = [place, size, colour];
+        let Some(Window { view, cues, map }) = &mut self.window else { return };
+        cues.each_mut().into_iter().for_each(|cue| cue.look(view));
+        let cues = cues.each();
         let evidence = |full: &Rect| cues.iter().map(|cue| cue.over_window(view, full)).sum();
         map.find_peaks(view.window(), view.side(), full, evidence);
     }
@@ -140,9 +150,9 @@ impl Cues {
     /// Looks closer where the target was found, its whole box being as large as that.
     pub fn look_closer(&mut self, full: &Rect) {
         let found = self.found(full).unwrap_or(*full);
-        let Some(WindowCues { view, place, size, colour, .. }) = &mut self.window else { return };
-        let cues: [&mut dyn Cue; 3] = [place, size, colour];
-        cues.into_iter().for_each(|cue| cue.look_closer(view, found));
+        if let Some(Window { view, cues, .. }) = &mut self.window {
+            cues.each_mut().into_iter().for_each(|cue| cue.look_closer(view, found));
+        }
     }
 
     /// The whole box of that size where the cues that look over the window together find the target.
@@ -173,7 +183,7 @@ impl Cues {
         let of_window = self
             .window
             .as_ref()
-            .map_or(0.0, |window| window.each().iter().map(|cue| cue.log_likelihood(hypothesis)).sum());
+            .map_or(0.0, |window| window.cues.each().iter().map(|cue| cue.log_likelihood(hypothesis)).sum());
         of_part + of_window
     }
 
@@ -182,20 +192,20 @@ impl Cues {
         Fit {
             score: self.classifier.score(hypothesis),
             hog_distance: self.gradients.distance(hypothesis),
-            response: self.window.as_ref().map(|window| window.place.response(&hypothesis.full)),
+            response: self.window.as_ref().map(|window| window.cues.place.response(&hypothesis.full)),
         }
     }
 
     /// Tells the cues that weigh themselves where the estimate is, before anything learns it.
     pub fn credit(&mut self, full: &Rect) {
         if let Some(window) = &mut self.window {
-            window.place.credit(full);
+            window.cues.place.credit(full);
         }
     }
 
     /// How far the place filters' last peaks stand above the rest of the window, in standard deviations of the rest.
     pub fn peak_sharpness(&self) -> Option<f64> {
-        self.window.as_ref().map(|window| window.place.sharpness())
+        self.window.as_ref().map(|window| window.cues.place.sharpness())
     }
 
     /// The two halves of learning, which do not touch each other: what looks at the part, and what looks over the window.
@@ -224,21 +234,14 @@ impl PartCues<'_> {
 }
 
 /// The cues that look over the window, when they learn.
-pub(super) struct Learner<'a>(&'a mut WindowCues);
+pub(super) struct Learner<'a>(&'a mut Window);
 
 impl Learner<'_> {
     /// Learns that the target has that whole box in the frame last seen.
     pub fn learn(&mut self, frame: &FrameView<'_>, full: Rect) {
-        let WindowCues { view, place, size, colour, .. } = &mut *self.0;
+        let Window { view, cues, .. } = &mut *self.0;
         view.learn(frame, full);
-        let view = &*view;
-        rayon::join(
-            || place.learn(view, full),
-            || {
-                size.learn(view, full);
-                colour.learn(view, full);
-            },
-        );
+        cues.each_mut().into_par_iter().with_max_len(1).for_each(|cue| cue.learn(view, full));
     }
 }
 

@@ -132,3 +132,43 @@ impl Cue for Place {
         self.lessons += 1;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::{Frame, PixelFormat};
+
+    const FULL: Rect = Rect { x: 40.0, y: 30.0, w: 20.0, h: 40.0 };
+
+    /// A still texture about the target, or a flat one.
+    fn frame(is_flat: bool) -> Frame {
+        let level = |x: usize, y: usize| {
+            let inside = (40..60).contains(&x) && (30..70).contains(&y);
+            if is_flat && !inside { 90 } else { ((x * 7919 + y * 104_729) % 251) as u8 }
+        };
+        let pixels = (0..120 * 110).map(|i| level(i % 120, i / 120)).collect();
+        Frame::new(pixels, 120, 110, PixelFormat::Gray).unwrap()
+    }
+
+    #[test]
+    fn the_filter_that_answers_less_loses_weight_and_the_weights_sum_to_one() {
+        let parameters = Parameters { correlation_surroundings: 3.0, ..Parameters::default() };
+        let (mut place, mut view) = (Place::new(&parameters, &FULL), WindowView::new(&parameters, FULL));
+        let first = frame(false);
+        view.see(&first.view(), FULL);
+        view.learn(&first.view(), FULL);
+        place.learn(&view, FULL);
+        // The surroundings are gone: the filter that learnt them answers less.
+        let changed = frame(true);
+        for _ in 0..20 {
+            view.see(&changed.view(), FULL);
+            place.look(&view);
+            place.credit(&FULL);
+        }
+        let [own, wide] = [&place.members[0], &place.members[1]];
+        assert!(own.answer(&FULL) > wide.answer(&FULL) && own.share > 0.6, "{} {}", own.share, wide.share);
+        assert!((own.share + wide.share - 1.0).abs() < 1e-12);
+        let mean = own.share * own.answer(&FULL) + wide.share * wide.answer(&FULL);
+        assert!((place.response(&FULL) - mean).abs() < 1e-12);
+    }
+}

@@ -72,7 +72,7 @@ impl Setting {
     fn terms(&self, full: Rect) -> Vec<f64> {
         let hypothesis = self.hypothesis(full);
         let mut cues: Vec<&dyn Cue> = vec![&self.cues.classifier, &self.cues.gradients];
-        cues.extend(self.cues.window.iter().flat_map(WindowCues::each));
+        cues.extend(self.cues.window.iter().flat_map(|window| window.cues.each()));
         cues.iter().map(|cue| cue.log_likelihood(&hypothesis)).collect()
     }
 

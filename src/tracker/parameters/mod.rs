@@ -10,7 +10,7 @@ use crate::{bayes::resampling::Resampling, geometry::Region};
 use field::Limited;
 
 /// Version of the parameters' schema. It grows when a key changes its meaning.
-pub const SCHEMA_VERSION: u64 = 1;
+pub const SCHEMA_VERSION: u64 = 2;
 
 /// Parameters that cannot be used.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -143,13 +143,13 @@ parameters! {
         "Larger parts are averaged down to at most about this many pixels before features are computed.";
 
     correlation_weight: f64 = 40.0, [0.0, 1000.0], "per unit of response",
-        "beta: weight of the correlation filter's response in the exponent of the likelihood; 0 leaves the filter out.";
+        "beta: weight of the place filters' mean response in the exponent of the likelihood; 0 leaves out all cues over the window.";
     correlation_window: f64 = 4.0, [1.0, 10.0], "sqrt(w h) of the whole box",
         "Side of the square window that is searched.";
     correlation_cells: usize = 32, [8, 128], "cells",
         "Cells along the window's side; an odd number is rounded up.";
     correlation_label_sigma: f64 = 0.0625, [0.001, 1.0], "sqrt(w h) of the whole box",
-        "Standard deviation of the response that the filter is to give.";
+        "Standard deviation of the response that the filters are to give.";
     correlation_filters: usize = 2, [1, 2], "filters",
         "The first filter looks at the target's own cells, the second, if there is one, at its surroundings too.";
     correlation_support: f64 = 1.0, [0.1, 10.0], "share of w and h of the whole box",
@@ -161,9 +161,9 @@ parameters! {
     correlation_temporal: f64 = 20.0, [0.0, 1e6], "penalty",
         "mu: how strongly a later filter is held to the one before.";
     correlation_rounds: usize = 2, [1, 20], "rounds",
-        "Rounds of the alternating direction method in which the filter learns.";
+        "Rounds of the alternating direction method in which a filter learns.";
     colour_weight: f64 = 60.0, [0.0, 1000.0], "per unit of contrast",
-        "Weight of the foreground's contrast, by colour, in the exponent of the likelihood; needs correlation_weight.";
+        "Weight of the foreground's contrast, by colour, in the exponent of the likelihood.";
     colour_rate: f64 = 0.04, [0.0001, 1.0], "share a learning",
         "How far the colours of target and surroundings move towards what is learnt.";
     correlation_interval: usize = 2, [1, 10_000], "frames",
@@ -177,7 +177,7 @@ parameters! {
     scale_rate: f64 = 0.025, [0.0001, 1.0], "share a learning",
         "How far the scale filter moves towards what it learns.";
     peak_share: f64 = 0.5, [0.0, 0.99], "share of particles",
-        "Particles drawn around the place where the filter peaks instead of from the walk.";
+        "Particles drawn around the place that the cues over the window answer to instead of from the walk.";
     peak_spread: f64 = 0.1, [0.001, 10.0], "sqrt(w h) of the part",
         "Standard deviation of those draws along each axis.";
 
