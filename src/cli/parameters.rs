@@ -11,7 +11,7 @@ use infopart::{
     geometry::Region,
     program::BadInput,
     tracker::{
-        CheckedParameters, Parameters,
+        CheckedParameters, Parameters, SearchExtent,
         colour::{CheckedColourParameters, ColourParameters},
     },
 };
@@ -24,6 +24,10 @@ pub struct ParameterArgs {
     /// [default: part]
     #[arg(long, value_name = "part|whole|FRACTION")]
     region: Option<Region>,
+    /// Where a target that was lost is looked for: `off` (nowhere else), `near` (in the window where it was lost), or `frame`
+    /// (everywhere) [default: the preset's]
+    #[arg(long, value_name = "off|near|frame")]
+    search: Option<SearchExtent>,
     /// The parameters to start from: `default`, or `paper`
     #[arg(long, value_name = "NAME", default_value = "default")]
     pub preset: String,
@@ -46,6 +50,7 @@ impl ParameterArgs {
         parameters.region = self.region.unwrap_or(parameters.region);
         parameters.particles = self.particles.unwrap_or(parameters.particles);
         parameters.seed = self.seed.unwrap_or(parameters.seed);
+        parameters.search = self.search.unwrap_or(parameters.search);
         let from = match &self.config {
             Some(path) => format!("parameters of {} and the flags", path.display()),
             None => "parameters from the flags".to_owned(),
@@ -55,7 +60,11 @@ impl ParameterArgs {
 
     /// The colour tracker's: flags over the file over its defaults, checked.
     pub fn resolve_colour(&self) -> Result<CheckedColourParameters> {
-        let foreign = [("--region", self.region.is_some()), ("--preset", self.preset != "default")];
+        let foreign = [
+            ("--region", self.region.is_some()),
+            ("--search", self.search.is_some()),
+            ("--preset", self.preset != "default"),
+        ];
         if let Some((flag, _)) = foreign.iter().find(|(_, given)| *given) {
             return Err(BadInput(format!("{flag} is InfoPart's; leave it out with --tracker colour")).into());
         }

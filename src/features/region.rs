@@ -107,6 +107,22 @@ impl RegionIntegrals {
         }
     }
 
+    /// The mean of each colour channel over a box of this region, its borders at the nearest cells; a grey frame has its level in
+    /// all of them. 0 where the box lies outside.
+    pub fn mean_colour(&self, hypothesis: &BoxInRegion) -> [f32; CHANNELS] {
+        let (left, right) = (self.column(hypothesis.x), self.column(hypothesis.x + hypothesis.w));
+        let (top, bottom) = (self.row(hypothesis.y), self.row(hypothesis.y + hypothesis.h));
+        let per_area = 1.0 / ((right - left) * (bottom - top)).max(1) as f32;
+        let (above, below) = (top * self.stride(), bottom * self.stride());
+        std::array::from_fn(|channel| {
+            let integral = self.colour(channel);
+            let (a, b) = (integral[above + left], integral[above + right]);
+            let (c, d) = (integral[below + left], integral[below + right]);
+            // Wrapping: the difference is exact though a partial one may pass below zero.
+            d.wrapping_sub(c).wrapping_sub(b).wrapping_add(a) as f32 * per_area
+        })
+    }
+
     /// The grid column nearest to `x` cells, inside the region.
     pub(crate) fn column(&self, x: f32) -> usize {
         nearest_line(x, self.region().width)

@@ -39,7 +39,7 @@ pub use error::{RowProblem, SequenceError};
 pub use ground_truth::{parse_boxes, parse_ground_truth, read_boxes, read_ground_truth};
 pub use open::open;
 pub use otb::{OtbImages, OtbTarget, otb_images, otb_targets};
-pub use walker::{Occluder, Walker, WalkerOptions};
+pub use walker::{Absence, Companion, Occluder, Walker, WalkerOptions};
 
 /// A frame and where it stands in its source.
 #[derive(Debug, Clone)]

@@ -39,6 +39,11 @@ const WITHOUT_CORRELATION: OfFrame =
     OfFrame { intercept: 1.9, per_mean_stump: 3.8, per_hog_distance: 3.8, per_log_sharpness: 0.0 };
 const WITH_MEMORY: WithMemory = WithMemory { intercept: 0.23, per_log_odds: 0.69, per_lowest: 0.31 };
 
+/// From this likeness on, identity says nothing against the target.
+const LIKE: f64 = 0.35;
+/// What a unit of likeness below that takes away from the log-odds.
+const PER_UNLIKENESS: f64 = 10.0;
+
 /// The lowest log-odds before anything was seen, and at most.
 const HIGHEST: f64 = 4.0;
 /// What the lowest log-odds rise by in a frame.
@@ -81,6 +86,11 @@ impl Judge {
     }
 }
 
+/// The probability that an estimate is right from the evidence of one frame alone.
+pub(super) fn of_frame(evidence: &Evidence) -> f64 {
+    probability(log_odds(evidence))
+}
+
 /// Step 1.
 fn log_odds(evidence: &Evidence) -> f64 {
     let (model, sharpness) = match evidence.peak_sharpness {
@@ -90,6 +100,7 @@ fn log_odds(evidence: &Evidence) -> f64 {
     model.intercept + model.per_mean_stump * evidence.mean_stump
         - model.per_hog_distance * evidence.hog_distance
         + model.per_log_sharpness * sharpness.ln()
+        - PER_UNLIKENESS * (LIKE - evidence.likeness).max(0.0)
 }
 
 fn probability(log_odds: f64) -> f64 {
@@ -112,7 +123,7 @@ mod tests {
     use super::*;
 
     fn evidence(mean_stump: f64, hog_distance: f64, peak_sharpness: Option<f64>) -> Evidence {
-        Evidence { mean_stump, hog_distance, peak_sharpness, lowest_log_odds: None }
+        Evidence { mean_stump, hog_distance, peak_sharpness, likeness: 0.7, lowest_log_odds: None }
     }
 
     fn clear() -> Evidence {

@@ -61,6 +61,8 @@ pub struct Evidence {
     /// How far the place filters' peaks stand above the rest of the window, in standard deviations of the rest; their mean,
     /// weighted as their responses are. `None` without the filters.
     pub peak_sharpness: Option<f64>,
+    /// How much more the part is like what the target looked like than like others, in [0, 1].
+    pub likeness: f64,
     /// The lowest log-odds that a frame alone has given since the first, forgotten by 0.005 a frame: after a loss the target may
     /// be another. `None` without the filter.
     pub lowest_log_odds: Option<f64>,

@@ -11,7 +11,8 @@
 //!    c. judge the estimate,
 //!    d. if it is due and the estimate is trusted, sample the new part, its surroundings and the other places that the cues
 //!    answer to, and retrain F,
-//!    e. likewise let the cues over the window learn.
+//!    e. likewise let the cues over the window learn,
+//!    f. if the target was lost, look for it elsewhere (`infopart/recovery.rs`).
 //!
 //! The correlation filter is the step that the paper names as its next; without the cues over the window (weight 0) all else is
 //! as printed.
@@ -33,17 +34,21 @@ use crate::{
 };
 use rand::RngExt;
 
+mod recovery;
+
 use super::{
     TrackError, Tracker,
     confidence::{Belief, Judge, status},
     cues::{Cues, Fit, Lesson},
     estimate::{BoxWarning, Estimate, Evidence, StageTime, Status, WeightedBox},
     first_box,
+    identity::{Identity, Portrait},
     learning_gate::LearningGate,
     motion::{Limits, PartState, PartWalk, box_of, state_of},
     parameters::CheckedParameters,
     proposal::PeakProposal,
     sampling::Sampler,
+    search::Search,
     stopwatch::Stopwatch,
     streams::{Use, stream},
 };
@@ -56,6 +61,9 @@ const MAX_REGION_SIDE: f64 = 16_384.0;
 
 /// Places that the cues answer to are others if they overlap the target by less than this.
 const OTHERS_OVERLAP: f64 = 0.4;
+
+/// The least confidence of a frame that identity learns from.
+const SURE: f64 = 0.85;
 
 /// The InfoPart tracker.
 pub struct InfoPart {
@@ -79,7 +87,9 @@ struct Target {
     estimate: Estimate,
     /// Whether the last frame's estimate may be learnt.
     learnable: bool,
+    identity: Identity,
     judge: Judge,
+    search: Search,
     gate: LearningGate,
     set_estimates: Vec<ParticleEstimate<3>>,
     /// Scratch: parts where the cues answer and the target is not.
@@ -156,6 +166,8 @@ impl InfoPart {
         self.stopwatch.lap("estimate");
         target.learn(parameters, &frame, &mut self.integrals, &fit);
         self.stopwatch.lap("learning");
+        target.search(parameters, &frame, &mut self.integrals);
+        self.stopwatch.lap("search");
         Ok(target.estimate.clone())
     }
 }
@@ -188,7 +200,9 @@ impl Target {
             cues: Cues::new(parameters, pool, Hog::of(integrals, &template), box_in_frame),
             estimate,
             learnable: true,
+            identity: Identity::new(Portrait::of(integrals, part)),
             judge: Judge::default(),
+            search: Search::default(),
             gate: LearningGate::new(parameters),
             set_estimates: Vec::with_capacity(parameters.particle_sets),
             others: Vec::new(),
@@ -274,15 +288,9 @@ impl Target {
         let (mean, covariance) = merge(&self.set_estimates);
         let part = box_of(&mean, self.aspect);
         let full = parameters.region.full_from_part(part);
-        let fit = self.cues.fit(&self.cues.hypothesis(integrals, part, full));
-        let mut evidence = Evidence {
-            mean_stump: f64::from(fit.score) / parameters.stumps as f64,
-            hog_distance: f64::from(fit.hog_distance),
-            peak_sharpness: self.cues.peak_sharpness(),
-            lowest_log_odds: None,
-        };
+        let (fit, mut evidence) = self.evidence(parameters, integrals, part, full);
         let Belief { of_frame, confidence } = self.judge.believe(&mut evidence);
-        self.learnable = self.gate.opens(of_frame, fit.response);
+        self.learnable = self.gate.opens(of_frame, fit.response) && self.search.suspect().is_none();
         self.estimate = Estimate::new(full, part, confidence, status(confidence));
         self.estimate.effective_sample_size =
             self.set_estimates.iter().map(|set| set.effective_sample_size).sum();
@@ -290,6 +298,26 @@ impl Target {
         self.estimate.evidence = Some(evidence);
         self.cues.credit(&full);
         fit
+    }
+
+    /// How well a part and its whole box fit, and what that tells.
+    fn evidence(
+        &self,
+        parameters: &CheckedParameters,
+        integrals: &RegionIntegrals,
+        part: Rect,
+        full: Rect,
+    ) -> (Fit, Evidence) {
+        let fit = self.cues.fit(&self.cues.hypothesis(integrals, part, full));
+        let likeness = self.identity.likeness(&Portrait::of(integrals, part));
+        let evidence = Evidence {
+            mean_stump: f64::from(fit.score) / parameters.stumps as f64,
+            hog_distance: f64::from(fit.hog_distance),
+            peak_sharpness: self.cues.peak_sharpness(),
+            likeness: f64::from(likeness),
+            lowest_log_odds: None,
+        };
+        (fit, evidence)
     }
 
     /// Step 2.
@@ -323,7 +351,7 @@ impl Target {
         if train {
             self.find_others(parameters);
         }
-        let Self { cues, estimate, frame: number, others, .. } = self;
+        let Self { cues, estimate, frame: number, others, identity, .. } = self;
         let Estimate { part_in_frame: part, box_in_frame: full, .. } = *estimate;
         // Without the window's cues samples are taken where the particles are, as printed.
         let cover_samples = cues.look_over_window();
@@ -340,6 +368,10 @@ impl Target {
                     integrals.compute(frame, search_region(field, &part, parameters.max_part_cells));
                 }
                 of_part.age_template(integrals, part);
+                let portraits = others.iter().map(|other| Portrait::of(integrals, *other));
+                if estimate.confidence >= SURE {
+                    identity.learn(Portrait::of(integrals, part), portraits);
+                }
                 let counts = (parameters.targets, parameters.backgrounds);
                 let lesson = Lesson { integrals, part, others, counts };
                 of_part.learn(&lesson, &mut stream(parameters.seed, *number, Use::Samples));

@@ -6,12 +6,14 @@ mod cues;
 mod estimate;
 mod evidence_map;
 mod first_box;
+mod identity;
 mod infopart;
 mod learning_gate;
 mod motion;
 mod parameters;
 mod proposal;
 mod sampling;
+mod search;
 mod stopwatch;
 mod streams;
 mod window_view;
@@ -26,6 +28,7 @@ use crate::{
 pub use estimate::{BoxWarning, Estimate, Evidence, StageTime, Status, WeightedBox};
 pub use infopart::InfoPart;
 pub use parameters::{CheckedParameters, ParameterError, Parameters, SCHEMA_VERSION};
+pub use search::SearchExtent;
 
 /// A single-object tracker. Object-safe and `Send`; it holds no global state, so any number may run at once.
 pub trait Tracker: Send {

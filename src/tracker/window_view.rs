@@ -155,6 +155,11 @@ impl WindowView {
         &self.integrals
     }
 
+    /// The colours of the target and of what surrounds it.
+    pub fn foreground_model(&self) -> &ForegroundModel {
+        &self.foreground_model
+    }
+
     /// Foreground probabilities over the window and a little more.
     pub fn foreground(&self) -> &ForegroundMap {
         &self.foreground

@@ -28,6 +28,13 @@ pub(super) const WALKER: Clothes = Clothes {
     hair: [58.0, 40.0, 28.0],
 };
 
+/// Somebody in other clothes.
+pub(super) const STRANGER: Clothes = Clothes {
+    shirt: [[54.0, 96.0, 132.0], [60.0, 70.0, 84.0]],
+    trousers: [120.0, 108.0, 88.0],
+    hair: [140.0, 110.0, 70.0],
+};
+
 const SKIN: Colour = [206.0, 160.0, 130.0];
 const SHOE: Colour = [40.0, 34.0, 32.0];
 

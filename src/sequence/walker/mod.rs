@@ -25,7 +25,7 @@ mod motion;
 mod scene;
 
 use canvas::Canvas;
-use figure::{Pose, WALKER};
+use figure::{Clothes, Pose, STRANGER, WALKER};
 use motion::{Moment, camera_reach, moments, unit};
 
 /// The least width and height that is rendered, pixels.
@@ -47,6 +47,35 @@ pub enum Occluder {
     YoungTree,
     /// A tree that hides the whole person for about seven frames.
     Tree,
+    /// A wall that hides the whole person for about sixty frames.
+    Wall,
+}
+
+/// Whether the person goes out of sight for a while.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum Absence {
+    /// Never.
+    #[default]
+    Never,
+    /// After 60 frames the person hurries out at the right side, is away for 40 to 100 frames, and comes in again at the left, nearer
+    /// to the camera or farther away.
+    Leaves,
+    /// After 60 frames the picture shows another street for 30 to 60 frames.
+    Cut,
+}
+
+/// Somebody who overtakes the person.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum Companion {
+    /// Nobody.
+    #[default]
+    Nobody,
+    /// Somebody in other clothes.
+    Unlike,
+    /// Somebody in the same clothes.
+    Alike,
 }
 
 /// What the synthetic walker looks like.
@@ -62,11 +91,23 @@ pub struct WalkerOptions {
     pub seed: u64,
     /// What passes in front of the person. Default: nothing.
     pub occluder: Occluder,
+    /// Whether the person goes out of sight. Default: never.
+    pub absence: Absence,
+    /// Who overtakes the person. Default: nobody.
+    pub companion: Companion,
 }
 
 impl Default for WalkerOptions {
     fn default() -> Self {
-        Self { width: 320, height: 240, frames: 150, seed: 1, occluder: Occluder::None }
+        Self {
+            width: 320,
+            height: 240,
+            frames: 150,
+            seed: 1,
+            occluder: Occluder::None,
+            absence: Absence::Never,
+            companion: Companion::Nobody,
+        }
     }
 }
 
@@ -75,6 +116,8 @@ impl Default for WalkerOptions {
 pub struct Walker {
     options: WalkerOptions,
     street: Canvas,
+    /// What the picture shows meanwhile, if it is cut.
+    elsewhere: Option<Canvas>,
     moments: Vec<Moment>,
     next: usize,
 }
@@ -87,14 +130,26 @@ impl Walker {
         let (right, shake) = camera_reach(&options);
         let (wide, high) = (width + right.ceil() as usize + 2, height + shake.ceil() as usize + 2);
         let mut rng = ChaCha8Rng::seed_from_u64(options.seed);
-        let street = scene::street(wide, high, unit(&options) as f32, &mut rng);
-        Self { moments: moments(&options), options, street, next: 0 }
+        let mut street = || scene::street(wide, high, unit(&options) as f32, &mut rng);
+        let here = street();
+        let elsewhere = (options.absence == Absence::Cut).then(&mut street);
+        Self { moments: moments(&options), street: here, elsewhere, options, next: 0 }
     }
 
     /// The person's box in each frame, in frame coordinates: as high as the person standing upright, and as wide as a
-    /// usual step, which the feet of a wide one leave a little. Given for hidden frames too.
+    /// usual step, which the feet of a wide one leave a little. Given behind trees and walls too; `None` where the person is away.
     pub fn ground_truth(&self) -> Vec<Option<Rect>> {
-        self.moments.iter().map(|moment| Some(moment.box_in_frame())).collect()
+        self.moments.iter().map(|moment| (!moment.is_away).then(|| moment.box_in_frame())).collect()
+    }
+
+    /// Whether a wall or a tree hides the person's whole box in the frame at `index`.
+    ///
+    /// # Panics
+    /// If there is no such frame.
+    pub fn is_hidden(&self, index: usize) -> bool {
+        let moment = &self.moments[index];
+        let target = moment.box_in_frame();
+        moment.occluder.is_some_and(|(left, right)| left <= target.x && target.right() <= right)
     }
 
     /// The file name of the frame with this number, counted from 1, in `img/`.
@@ -120,10 +175,11 @@ impl Walker {
     }
 
     fn rows(&self) -> String {
-        let boxes = self.moments.iter().map(|moment| Origin::One.from_frame(moment.box_in_frame()));
-        boxes
-            .map(|one_based| format!("{},{},{},{}\n", one_based.x, one_based.y, one_based.w, one_based.h))
-            .collect()
+        let row = |found: Option<Rect>| match found.map(|target| Origin::One.from_frame(target)) {
+            Some(Rect { x, y, w, h }) => format!("{x},{y},{w},{h}\n"),
+            None => "NaN,NaN,NaN,NaN\n".to_owned(),
+        };
+        self.ground_truth().into_iter().map(row).collect()
     }
 
     fn jpeg(&self, index: usize) -> Result<Vec<u8>, SequenceError> {
@@ -142,10 +198,24 @@ impl Walker {
     fn rgb(&self, index: usize) -> Vec<u8> {
         let moment = &self.moments[index];
         let camera = (moment.camera.0 as f32, moment.camera.1 as f32);
-        let mut canvas = self.street.window(camera, self.options.width, self.options.height);
-        let foot = (moment.foot.0 as f32, moment.foot.1 as f32);
-        let pose = Pose { foot, height: moment.height as f32, phase: moment.phase as f32, swing: 1.0 };
-        figure::draw(&mut canvas, &pose, &WALKER);
+        let elsewhere = self.elsewhere.as_ref().filter(|_| moment.is_away);
+        let street = elsewhere.unwrap_or(&self.street);
+        let mut canvas = street.window(camera, self.options.width, self.options.height);
+        let mut draw = |foot: (f64, f64), clothes: &Clothes| {
+            let foot = (foot.0 as f32, foot.1 as f32);
+            let pose = Pose { foot, height: moment.height as f32, phase: moment.phase as f32, swing: 1.0 };
+            figure::draw(&mut canvas, &pose, clothes);
+        };
+        if elsewhere.is_none() {
+            match self.options.companion {
+                Companion::Nobody => {}
+                Companion::Unlike => draw(moment.companion, &STRANGER),
+                Companion::Alike => draw(moment.companion, &WALKER),
+            }
+        }
+        if !moment.is_away {
+            draw(moment.foot, &WALKER);
+        }
         if let Some((left, right)) = moment.occluder {
             let unit = unit(&self.options) as f32;
             scene::trunk(&mut canvas, (left as f32, right as f32), unit, self.options.seed);

@@ -2,7 +2,10 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::{Occluder, WalkerOptions, figure::ASPECT};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+use super::{Absence, Occluder, WalkerOptions, figure::ASPECT};
 use crate::geometry::Rect;
 
 /// The walk takes this many frames from side to side; shorter sequences stop on the way.
@@ -27,6 +30,22 @@ const OCCLUDED_AT: f64 = 0.56;
 /// How many frames the person's box is wholly behind a tree.
 const OCCLUDED_FRAMES: f64 = 7.0;
 
+/// How many frames the person's box is wholly behind a wall.
+const WALLED_FRAMES: f64 = 60.0;
+
+/// The frame from which on the person is about to go away.
+const LEAVES_AT: usize = 60;
+
+/// How far somebody in a hurry walks in a frame, in widths of the frame.
+const HURRY: f64 = 0.0125;
+
+/// How much lower or higher somebody comes back at most, of a frame 240 pixels high.
+const OTHER_WAY: f64 = 20.0;
+
+/// How far behind somebody who overtakes starts, and how much farther that one walks in a frame, in widths of the frame; and how
+/// much higher that one stands, of a frame 240 pixels high.
+const OVERTAKES: (f64, f64, f64) = (0.25, 0.004, 5.0);
+
 /// Width of a young tree by the width of the person's box.
 const YOUNG_TREE: f64 = 0.3;
 
@@ -45,6 +64,10 @@ pub(super) struct Moment {
     pub(super) gain: f64,
     /// Left and right edge of the occluder.
     pub(super) occluder: Option<(f64, f64)>,
+    /// Whether the person is not in the picture.
+    pub(super) is_away: bool,
+    /// Where somebody who overtakes stands in the frame.
+    pub(super) companion: (f64, f64),
 }
 
 impl Moment {
@@ -72,10 +95,12 @@ pub(super) fn moments(options: &WalkerOptions) -> Vec<Moment> {
     let occluder_width = occluder_width(options, last);
     let mut phase = 0.6;
     let mut walked = None;
-    let times = (0..options.frames).map(|index| index as f64 / last as f64);
-    times
-        .map(|t| {
-            let (foot, height, camera) = (foot(options, t), height(options, t), camera(options, t));
+    let plot = Plot::new(options);
+    (0..options.frames)
+        .map(|index| {
+            let t = index as f64 / last as f64;
+            let (height, camera) = (height(options, t), camera(options, t));
+            let (foot, is_away) = plot.at(options, index, foot(options, t), ASPECT * height);
             let street = foot.0 + camera.0;
             phase += TAU * (street - walked.unwrap_or(street)) / (STRIDE * height);
             walked = Some(street);
@@ -83,9 +108,55 @@ pub(super) fn moments(options: &WalkerOptions) -> Vec<Moment> {
                 let centre = occluder_centre(options, t);
                 (centre - occluder_width / 2.0, centre + occluder_width / 2.0)
             });
-            Moment { camera, foot, height, phase, gain: 0.825 + 0.175 * (TAU * t).cos(), occluder }
+            let (behind, ahead, higher) = OVERTAKES;
+            let overtaken = (ahead * index as f64 - behind) * options.width as f64;
+            let companion =
+                (self::foot(options, t).0 + overtaken, self::foot(options, t).1 - higher * unit(options));
+            let gain = 0.825 + 0.175 * (TAU * t).cos();
+            Moment { camera, foot, height, phase, gain, occluder, is_away, companion }
         })
         .collect()
+}
+
+/// When and how the person goes away and comes back.
+struct Plot {
+    absence: Absence,
+    /// Frames away.
+    away: usize,
+    /// How much lower the person comes back, pixels.
+    lower: f64,
+}
+
+impl Plot {
+    fn new(options: &WalkerOptions) -> Self {
+        let mut rng = ChaCha8Rng::seed_from_u64(options.seed ^ 0xA5A5);
+        let away = match options.absence {
+            Absence::Never => 0,
+            Absence::Leaves => rng.random_range(40..=100),
+            Absence::Cut => rng.random_range(30..=60),
+        };
+        let lower = rng.random_range(-OTHER_WAY..=OTHER_WAY) * unit(options);
+        Self { absence: options.absence, away, lower }
+    }
+
+    /// Where the person of that width stands who would walk at `foot`, and whether away.
+    fn at(&self, options: &WalkerOptions, index: usize, foot: (f64, f64), width: f64) -> ((f64, f64), bool) {
+        let Some(since) = index.checked_sub(LEAVES_AT) else { return (foot, false) };
+        match self.absence {
+            Absence::Never => (foot, false),
+            Absence::Cut => (foot, since < self.away),
+            Absence::Leaves => {
+                let hurry = HURRY * options.width as f64;
+                let last = options.frames.max(FRAMES_OF_A_WALK) - 1;
+                let from = self::foot(options, LEAVES_AT as f64 / last as f64).0;
+                let out = ((options.width as f64 + width - from) / hurry).ceil() as usize;
+                match since.checked_sub(out + self.away) {
+                    None => ((from + hurry * since as f64, foot.1), since >= out),
+                    Some(back) => ((hurry * back as f64 - width, foot.1 + self.lower), false),
+                }
+            }
+        }
+    }
 }
 
 fn growth(t: f64) -> f64 {
@@ -118,7 +189,8 @@ fn occluder_width(options: &WalkerOptions, last: usize) -> f64 {
     if options.occluder == Occluder::YoungTree {
         return YOUNG_TREE * person;
     }
-    let half = OCCLUDED_FRAMES / 2.0 / last as f64;
+    let hidden = if options.occluder == Occluder::Wall { WALLED_FRAMES } else { OCCLUDED_FRAMES };
+    let half = hidden / 2.0 / last as f64;
     let (before, after) = (OCCLUDED_AT - half, OCCLUDED_AT + half);
     let passed = |t| foot(options, t).0 - occluder_centre(options, t);
     person + passed(after) - passed(before)

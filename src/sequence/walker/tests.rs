@@ -118,3 +118,54 @@ fn an_unwritable_folder_is_named() {
     let message = walker(1, 1).write_otb_folder(&file).unwrap_err().to_string();
     assert!(message.starts_with(&format!("{}: cannot be written", file.join("img").display())), "{message}");
 }
+
+#[test]
+fn who_leaves_is_away_for_a_while_and_comes_back_on_the_left() {
+    for seed in 1..=5 {
+        let options =
+            WalkerOptions { frames: 280, seed, absence: Absence::Leaves, ..WalkerOptions::default() };
+        let truth = Walker::new(options).ground_truth();
+        let away = truth.iter().filter(|target| target.is_none()).count();
+        assert!((40..=100).contains(&away), "{away}");
+        let leaves = truth.iter().position(Option::is_none).unwrap();
+        assert!(truth[leaves - 1].unwrap().right() > 320.0);
+        let back = truth[leaves + away].unwrap();
+        assert!(back.right() <= 0.5 && truth[leaves + away + 30].unwrap().x > 20.0);
+    }
+}
+
+#[test]
+fn a_cut_shows_another_street_without_the_person() {
+    let options = WalkerOptions { frames: 130, absence: Absence::Cut, ..WalkerOptions::default() };
+    let (cut, whole) = (Walker::new(options), walker(130, 1));
+    let truth = cut.ground_truth();
+    let away: Vec<_> = (0..130).filter(|&index| truth[index].is_none()).collect();
+    assert!((30..=60).contains(&away.len()) && away[0] == 60);
+    let difference = |index: usize| {
+        let pairs = cut.rgb(index).into_iter().zip(whole.rgb(index));
+        pairs.map(|(a, b)| f64::from(a.abs_diff(b))).sum::<f64>() / (320.0 * 240.0 * 3.0)
+    };
+    assert!(difference(59) == 0.0 && difference(away[away.len() - 1] + 1) == 0.0);
+    assert!(difference(70) > 3.0, "{}", difference(70));
+}
+
+#[test]
+fn a_wall_hides_the_person_for_about_sixty_frames() {
+    let options = WalkerOptions { frames: 240, occluder: Occluder::Wall, ..WalkerOptions::default() };
+    let walled = Walker::new(options);
+    let hidden = (0..240).filter(|&index| walled.is_hidden(index)).count();
+    assert!((50..=65).contains(&hidden), "{hidden}");
+}
+
+#[test]
+fn a_companion_overtakes_in_the_clothes_asked_for() {
+    let with = |companion| {
+        let options = WalkerOptions { frames: 100, companion, ..WalkerOptions::default() };
+        Walker::new(options)
+    };
+    let [nobody, unlike, alike] = [Companion::Nobody, Companion::Unlike, Companion::Alike].map(with);
+    let moments = &alike.moments;
+    assert!(moments[0].companion.0 < moments[0].foot.0 && moments[99].companion.0 > moments[99].foot.0);
+    let frames = [&nobody, &unlike, &alike].map(|walker| walker.rgb(99));
+    assert!(frames[0] != frames[1] && frames[1] != frames[2] && frames[0] != frames[2]);
+}

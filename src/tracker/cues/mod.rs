@@ -12,6 +12,7 @@ use rayon::prelude::*;
 
 use crate::{
     features::{
+        foreground::ForegroundModel,
         haar::HaarFeature,
         hog::Hog,
         region::{BoxInRegion, RegionIntegrals},
@@ -155,15 +156,30 @@ impl Cues {
         }
     }
 
+    /// Side of the window last seen, if any cue looks over one, pixels.
+    pub fn window_side(&self) -> Option<f64> {
+        self.window.as_ref().map(|window| window.view.window().side)
+    }
+
+    /// The colours of the target and of what surrounds it, if any cue looks over a window.
+    pub fn foreground_model(&self) -> Option<&ForegroundModel> {
+        self.window.as_ref().map(|window| window.view.foreground_model())
+    }
+
+    /// The whole boxes of that size at the places where the cues that look over the window answer, best first.
+    pub fn answers(&self, full: Rect) -> impl Iterator<Item = Rect> {
+        let peaks = self.window.as_ref().map_or(&[][..], |window| window.map.peaks());
+        peaks.iter().map(move |peak| peak.of(&full))
+    }
+
     /// The whole box of that size where the cues that look over the window together find the target.
     pub fn found(&self, full: &Rect) -> Option<Rect> {
-        self.window.as_ref().and_then(|window| window.map.peaks().first()).map(|peak| peak.of(full))
+        self.answers(*full).next()
     }
 
     /// Whole boxes of the size of `full` at the places that they answer to and that overlap it by less than `overlap`.
     pub fn answered_elsewhere(&self, full: Rect, overlap: f64) -> impl Iterator<Item = Rect> {
-        let peaks = self.window.as_ref().map_or(&[][..], |window| window.map.peaks());
-        peaks.iter().map(move |peak| peak.of(&full)).filter(move |other| other.overlap(&full) < overlap)
+        self.answers(full).filter(move |other| other.overlap(&full) < overlap)
     }
 
     /// A hypothesis of the part inside the region of `integrals`, and of the whole box with it.

@@ -6,6 +6,7 @@ mod presets;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+use super::search::SearchExtent;
 use crate::{bayes::resampling::Resampling, geometry::Region};
 use field::Limited;
 
@@ -101,6 +102,9 @@ parameters! {
         "Seed of all randomness. The same seed gives the same boxes at any number of threads.";
     region: Region = Region::Part, "part, whole or the upper fraction in (0, 1]",
         "What is tracked of the box, from its top edge down. `part` is head and torso of a person, the upper 5/8.";
+
+    search: SearchExtent = SearchExtent::Frame, "off, near or frame",
+        "Where a target that was lost is looked for: nowhere else, near where it was lost, or in the whole frame.";
 
     particles: usize = 100, [1, 100_000], "particles",
         "N_s: particles, all sets together.";

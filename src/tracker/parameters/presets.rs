@@ -3,6 +3,7 @@
 use crate::{bayes::resampling::Resampling, geometry::Region};
 
 use super::{ParameterError, Parameters};
+use crate::tracker::SearchExtent;
 
 impl Parameters {
     /// Names that [`preset`](Self::preset) knows.
@@ -26,6 +27,7 @@ impl Parameters {
     fn paper() -> Self {
         Self {
             region: Region::Part,
+            search: SearchExtent::Off,
             particles: 800,
             scale_about_centre: false,
             resampling: Resampling::Multinomial,
