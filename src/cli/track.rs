@@ -238,7 +238,7 @@ impl TrackArgs {
     }
 }
 
-fn thread_pool(threads: usize) -> Result<Arc<ThreadPool>> {
+pub fn thread_pool(threads: usize) -> Result<Arc<ThreadPool>> {
     let pool = ThreadPoolBuilder::new().num_threads(threads).build();
     let pool = pool.map_err(|error| BadInput(format!("--threads {threads}: {error}; give fewer threads")))?;
     Ok(Arc::new(pool))

@@ -10,7 +10,7 @@
 
 use multiversion::multiversion;
 
-use crate::{frame::FrameView, geometry::Rect};
+use crate::{frame::FrameView, geometry::Rect, parallel::join};
 
 use super::{cells::Cells, gradient::GradientRows, hog::BINS};
 
@@ -93,7 +93,7 @@ impl RegionIntegrals {
     pub fn compute(&mut self, frame: &FrameView<'_>, region: SearchRegion) {
         self.cells.cut(frame, region);
         let Self { cells, colour, orientation, rows } = self;
-        rayon::join(|| integrate_colour(cells, colour), || integrate_orientation(cells, orientation, rows));
+        join(|| integrate_colour(cells, colour), || integrate_orientation(cells, orientation, rows));
     }
 
     /// A box of the frame in this region's cells.

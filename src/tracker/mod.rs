@@ -12,6 +12,8 @@ mod motion;
 mod parameters;
 mod proposal;
 mod sampling;
+#[cfg(feature = "save")]
+mod saved;
 mod stopwatch;
 mod streams;
 mod window_view;
@@ -26,6 +28,8 @@ use crate::{
 pub use estimate::{BoxWarning, Estimate, Evidence, StageTime, Status, WeightedBox};
 pub use infopart::InfoPart;
 pub use parameters::{CheckedParameters, ParameterError, Parameters, SCHEMA_VERSION};
+#[cfg(feature = "save")]
+pub use saved::LoadError;
 
 /// A single-object tracker. Object-safe and `Send`; it holds no global state, so any number may run at once.
 pub trait Tracker: Send {

@@ -17,6 +17,7 @@ use crate::{
     },
     frame::FrameView,
     geometry::Rect,
+    parallel::join,
 };
 
 use super::{evidence_map::EvidenceMap, parameters::Parameters, window_view::WindowView};
@@ -72,6 +73,7 @@ pub(super) struct Fit {
 }
 
 /// Every cue in use.
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Cues {
     classifier: Classifier,
     gradients: Gradients,
@@ -80,6 +82,7 @@ pub(super) struct Cues {
 }
 
 /// Cues that look over a window around the target, and what they share.
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 struct WindowCues {
     view: WindowView,
     place: Place,
@@ -232,7 +235,7 @@ impl Learner<'_> {
         let WindowCues { view, place, size, colour, .. } = &mut *self.0;
         view.learn(frame, full);
         let view = &*view;
-        rayon::join(
+        join(
             || place.learn(view, full),
             || {
                 size.learn(view, full);
