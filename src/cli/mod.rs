@@ -16,6 +16,7 @@ mod outputs;
 mod parameters;
 mod several;
 mod track;
+mod trax;
 mod values;
 
 const EXAMPLES: &str = "\
@@ -54,6 +55,9 @@ enum Command {
     /// Print every parameter with its default, meaning and unit, as a TOML that --config takes
     #[command(after_help = config::EXAMPLES)]
     Config(config::ConfigArgs),
+    /// Serve the tracker to a TraX client, such as the VOT toolkit, on standard input and output
+    #[command(after_help = trax::EXAMPLES)]
+    Trax(Box<trax::TraxArgs>),
     /// Compare state estimators on a simulated oscillator; needs no data
     #[command(after_help = estimate::EXAMPLES)]
     Estimate(estimate::EstimateArgs),
@@ -65,6 +69,7 @@ pub fn main() -> ExitCode {
         Command::Track(args) => track::track(&args),
         Command::Demo(args) => demo::demo(&args),
         Command::Background(args) => background::background(&args),
+        Command::Trax(args) => trax::trax(&args),
         Command::Config(args) => config::config(&args),
         Command::Estimate(args) => estimate::estimate(&args),
     };
