@@ -8,7 +8,10 @@ use infopart::{
     sequence::{OpenOptions, Sequence, open},
 };
 use numpy::{PyArray, PyArrayMethods};
-use pyo3::{exceptions::{PyRuntimeError, PyValueError}, prelude::*};
+use pyo3::{
+    exceptions::{PyRuntimeError, PyValueError},
+    prelude::*,
+};
 
 /// x, y, w, h in pixels, counted from 0.
 type Box4 = (f64, f64, f64, f64);

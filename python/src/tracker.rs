@@ -171,7 +171,9 @@ impl NativeTracker {
             [x, y, w, h, particle.weight]
         });
         let array = Array2::from_shape_vec((particles.len(), 5), rows.collect());
-        array.map(|array| PyArray2::from_owned_array(py, array)).map_err(|e| PyRuntimeError::new_err(e.to_string()))
+        array
+            .map(|array| PyArray2::from_owned_array(py, array))
+            .map_err(|e| PyRuntimeError::new_err(e.to_string()))
     }
 
     /// The parameters as JSON.
@@ -258,7 +260,8 @@ fn numbers(rect: Rect) -> Box4 {
 }
 
 fn rect_of(given: &Bound<'_, PyAny>) -> PyResult<Rect> {
-    let refused = |why: String| PyValueError::new_err(format!("box: {why}; give four numbers, (x, y, w, h) in pixels"));
+    let refused =
+        |why: String| PyValueError::new_err(format!("box: {why}; give four numbers, (x, y, w, h) in pixels"));
     let Ok(items) = given.try_iter() else {
         return Err(refused(format!("it is a {}", given.get_type().name()?)));
     };
@@ -272,7 +275,10 @@ fn rect_of(given: &Bound<'_, PyAny>) -> PyResult<Rect> {
     }
     match sides[..] {
         [x, y, w, h] => Ok(Rect::new(x, y, w, h)),
-        _ => Err(refused(format!("it has {} numbers", if sides.len() > 4 { "more than 4".to_owned() } else { sides.len().to_string() }))),
+        _ => Err(refused(format!(
+            "it has {} numbers",
+            if sides.len() > 4 { "more than 4".to_owned() } else { sides.len().to_string() }
+        ))),
     }
 }
 
@@ -283,7 +289,9 @@ fn value_error(error: impl std::fmt::Display) -> PyErr {
 /// The exception of a refusal, which names the argument.
 fn exception(error: TrackError) -> PyErr {
     match error {
-        TrackError::BadBox { .. } | TrackError::BoxOutside { .. } => PyValueError::new_err(format!("box: {error}")),
+        TrackError::BadBox { .. } | TrackError::BoxOutside { .. } => {
+            PyValueError::new_err(format!("box: {error}"))
+        }
         TrackError::SizeChanged { .. } => PyValueError::new_err(format!("frame: {error}")),
         _ => PyRuntimeError::new_err(error.to_string()),
     }

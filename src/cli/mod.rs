@@ -7,6 +7,7 @@ use infopart::program;
 
 mod auto_init;
 mod background;
+mod completions;
 mod config;
 mod demo;
 mod demo_folder;
@@ -58,6 +59,9 @@ enum Command {
     /// Serve the tracker to a TraX client, such as the VOT toolkit, on standard input and output
     #[command(after_help = trax::EXAMPLES)]
     Trax(Box<trax::TraxArgs>),
+    /// Print what a shell needs to complete the program's words, or write man pages
+    #[command(after_help = completions::EXAMPLES)]
+    Completions(completions::CompletionsArgs),
     /// Compare state estimators on a simulated oscillator; needs no data
     #[command(after_help = estimate::EXAMPLES)]
     Estimate(estimate::EstimateArgs),
@@ -70,6 +74,7 @@ pub fn main() -> ExitCode {
         Command::Demo(args) => demo::demo(&args),
         Command::Background(args) => background::background(&args),
         Command::Trax(args) => trax::trax(&args),
+        Command::Completions(args) => completions::completions(&args),
         Command::Config(args) => config::config(&args),
         Command::Estimate(args) => estimate::estimate(&args),
     };

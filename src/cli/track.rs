@@ -6,9 +6,8 @@ use anyhow::{Context, Result};
 use clap::Args;
 use infopart::{
     geometry::{Origin, Rect, Region},
-    output::{Summary, tracker_title},
     program::{self, BadInput},
-    run::{Pace, RunReport, run_at},
+    run::{Pace, RunReport, Summary, run_at, tracker_title},
     sequence::{self, OpenOptions, Sequence},
     tracker::{
         CheckedParameters, InfoPart, Tracker,

@@ -17,9 +17,8 @@ use crate::{
 
 use super::{
     cells::{CHANNELS, Cells},
-    gradient::GradientRows,
-    hog::BINS,
-    region::SearchRegion,
+    gradient::{BINS, GradientRows},
+    search_region::SearchRegion,
 };
 
 /// Numbers of an entry: the orientations' sums, those of red, green and blue, and one that is always 0.

@@ -10,8 +10,8 @@
 
 use super::region::{BoxInRegion, RegionIntegrals};
 
-/// Unsigned orientation bins over the half turn.
-pub const BINS: usize = 8;
+pub use super::gradient::BINS;
+
 /// Cells along each side of the box.
 pub const CELLS: usize = 4;
 /// Numbers in a descriptor.

@@ -24,7 +24,6 @@ mod pictures;
 #[cfg(feature = "cli")]
 mod progress;
 mod rows;
-mod summary;
 #[cfg(test)]
 pub(crate) mod testing;
 mod text_table;
@@ -43,7 +42,6 @@ pub use pictures::PictureFolder;
 #[cfg(feature = "cli")]
 pub use progress::Progress;
 pub use rows::{RowFormat, RowOptions, RowWriter};
-pub use summary::{Summary, tracker_title};
 pub use text_table::TextTable;
 #[cfg(feature = "render")]
 pub use video::{VIDEO_EXTENSIONS, VideoWriter};
