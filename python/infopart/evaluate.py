@@ -135,7 +135,8 @@ class Run:
         started_here = not ray.is_initialized()
         if started_here:
             try:
-                ray.init(address=address, log_to_driver=False, logging_level="ERROR")
+                alone = {} if address else {"include_dashboard": False}
+                ray.init(address=address, log_to_driver=False, logging_level="ERROR", **alone)
             except (ConnectionError, ValueError) as error:
                 raise EvaluationError(
                     f"no Ray cluster at address={address!r}: {str(error).strip()}; start one with `ray start --head`, or "

@@ -24,8 +24,7 @@ def needs(module, package):
 
 
 def write_images(folder, frames, suffix):
-    from PIL import Image
-
+    Image = pytest.importorskip("PIL.Image", reason="pip install pillow")
     folder.mkdir(parents=True)
     for number, frame in enumerate(frames, 1):
         Image.fromarray(frame[:, :, ::-1].copy()).save(folder / f"{number:08d}.{suffix}", quality=95)
