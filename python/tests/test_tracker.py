@@ -3,6 +3,7 @@
 import copy
 import multiprocessing
 import pickle
+import re
 import subprocess
 import threading
 import time
@@ -284,7 +285,8 @@ def test_the_programs_boxes_bit_for_bit(data, program, tmp_path):
     folder.mkdir()
     for image in source:
         cv2.imwrite(str(folder / f"{image.stem}.png"), cv2.imread(str(image)))
-    x, y, w, h = (int(word) for word in (data / "otb/Crossing/groundtruth_rect.txt").read_text().split()[0].split(","))
+    first = (data / "otb/Crossing/groundtruth_rect.txt").read_text().splitlines()[0]
+    x, y, w, h = (int(word) for word in re.split(r"[,\s]+", first.strip()))
     box = (x - 1, y - 1, w, h)
     command = [program, "track", str(folder), "--init", ",".join(map(str, box)), "--quiet"]
     rows = subprocess.run(command, check=True, capture_output=True, text=True).stdout.split()
