@@ -44,25 +44,21 @@ class Scores:
     def __str__(self) -> str:
         return self.text
 
+    def rows(self) -> list[dict[str, Any]]:
+        """A row a toolkit and tracker: means over sequences and seeds, and updates a second."""
+        found = []
+        for entry in self.json["tables"]:
+            for tracker in entry["table"]["trackers"]:
+                scores = {name: spread and spread["mean"] for name, spread in (tracker["overall"] or {}).items()}
+                names = {"toolkit": entry["table"]["toolkit"], "tracker": tracker["tracker"]}
+                found.append({**names, **scores, "frames_per_second": tracker["frames_per_second"]})
+        return found
+
     def to_pandas(self) -> Any:
-        """A row a toolkit, tracker and measure of the whole evaluation; it needs pandas."""
+        """`rows` as a pandas.DataFrame."""
         import pandas
 
-        tables = self.json if isinstance(self.json, list) else [self.json]
-        rows = []
-        for table in tables:
-            for tracker in table["trackers"]:
-                numbers = {name: value for name, value in _flat(tracker.get("overall", tracker))}
-                rows.append({"toolkit": table.get("toolkit"), "tracker": tracker.get("tracker", tracker.get("name")), **numbers})
-        return pandas.DataFrame(rows)
-
-
-def _flat(value: Mapping[str, Any], before: str = "") -> Iterable[tuple[str, float]]:
-    for name, inner in value.items():
-        if isinstance(inner, Mapping):
-            yield from _flat(inner, f"{before}{name}.")
-        elif isinstance(inner, (int, float)) and not isinstance(inner, bool):
-            yield f"{before}{name}", inner
+        return pandas.DataFrame(self.rows())
 
 
 class Run:

@@ -53,7 +53,9 @@ def test_here_and_what_is_wrong_is_said(bench):
     here.here(jobs=2)
     assert all(job["done"] for job in here.plan()) and len(boxes_below(folder / "here")) == 6
     scores = here.score("pysot")
-    assert "mine" in str(scores) and scores.json
+    assert "mine" in str(scores)
+    assert [(row["toolkit"], row["tracker"]) for row in scores.rows()] == [("pysot", "infopart"), ("pysot", "mine")]
+    assert all(row["auc"] > 0.5 and row["frames_per_second"] > 0 for row in scores.rows()), scores.rows()
     with pytest.raises(EvaluationError, match="choose from"):
         run("other", trackers=["nobody"]).here()
     with pytest.raises(EvaluationError, match="no_such_program"):
