@@ -29,24 +29,32 @@
 //! # }
 //! ```
 //!
-//! Whole sequences come from [`sequence::open`], go through [`run::run`], and are watched by
-//! [observers](output::Observer).
+//! Whole sequences come from `sequence::open`, go through `run::run`, and are watched by observers, with the feature
+//! `images`. Without any feature the library is the trackers, the filters and the background model.
 #![deny(missing_docs)]
 
 pub mod background;
 pub mod bayes;
 pub mod boosting;
 pub mod correlation;
+#[cfg(feature = "cli")]
 pub mod experiments;
 pub mod features;
 pub mod frame;
 pub mod geometry;
 pub mod metrics;
+#[cfg(feature = "images")]
 pub mod output;
+pub mod parallel;
+#[cfg(feature = "cli")]
 pub mod program;
+#[cfg(feature = "images")]
 pub mod run;
+#[cfg(feature = "images")]
 pub mod sequence;
 pub mod tracker;
+#[cfg(feature = "images")]
+pub mod trax;
 
 /// The version of this package, as `infopart --version` tells it.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");

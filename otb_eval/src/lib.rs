@@ -6,6 +6,7 @@ pub mod check;
 pub mod compare;
 pub mod convert;
 pub mod dataset;
+pub mod external;
 pub mod figures;
 pub mod plots;
 pub mod protocol;

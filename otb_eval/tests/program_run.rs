@@ -57,6 +57,22 @@ fn a_killed_run_goes_on_to_the_bytes_of_an_undisturbed_one() {
 }
 
 #[test]
+fn single_jobs_give_the_bytes_of_one_run() {
+    let scene = Scene::with_walkers();
+    let run = "run --data data --config fast=fast.toml --sequences Bob,Cid";
+    scene.accepts(&format!("{run} --out whole"));
+    for job in ["ope/fast/seed_1/Cid", "ope/fast/seed_1/Bob"] {
+        let outcome = scene.accepts(&format!("{run} --out single --job {job}"));
+        assert!(outcome.stderr.contains("1 jobs: 0 were there, 1 done"), "{}", outcome.stderr);
+    }
+    assert!(scene.reproducible("single") == scene.reproducible("whole"));
+    scene.refuses(
+        &format!("{run} --out single --job ope/fast/seed_2/Cid"),
+        &["ope/fast/seed_2/Cid", "otb_eval plan"],
+    );
+}
+
+#[test]
 fn two_shards_at_once_give_the_bytes_of_one_run() {
     let scene = Scene::with_walkers();
     let sre = "run --data data --sequences Cid --config fast=fast.toml --protocol sre";

@@ -1,19 +1,23 @@
 //! The model of a whole view: a mixture a pixel.
 
 use image::GrayImage;
-use rayon::prelude::*;
 
 use super::{
     BACKGROUND, BackgroundError, CheckedBackgroundParameters,
     pixel::{Gaussian, Update},
 };
-use crate::frame::FrameView;
+use crate::{
+    frame::FrameView,
+    parallel::{ChunksMut, for_each},
+};
 
+/// Rows that a thread takes.
+const ROWS_AT_A_TIME: usize = 4;
 /// Pixels that a mask may have.
 const MOST_PIXELS: usize = 1 << 31;
 
-/// A mixture of Gaussians for every pixel. Rows are updated in parallel, in the rayon pool it is called from; the masks
-/// do not depend on the number of threads.
+/// A mixture of Gaussians for every pixel. Rows are updated in parallel where the caller's threads are (see [`Threads`](crate::parallel::Threads)); the
+/// masks do not depend on their number.
 ///
 /// A pixel's weights and its Gaussians are contiguous, apart from each other: where the first component explains the
 /// pixel, as it mostly does, no other Gaussian is touched.
@@ -45,12 +49,14 @@ impl BackgroundModel {
         self.frames += 1;
         let update = Update::new(&self.parameters, self.frames);
         let (k, width) = (self.parameters.components, frame.width());
-        let rows = self.weights.par_chunks_mut(k * width).zip(self.gaussians.par_chunks_mut(k * width));
-        rows.zip(self.mask.par_chunks_mut(width)).enumerate().for_each(
-            |(y, ((weights, gaussians), mask))| {
-                apply_row(&update, frame, y, weights, gaussians, mask);
-            },
+        let (weights, gaussians) = (&mut self.weights, &mut self.gaussians);
+        let rows = (
+            (ChunksMut(weights, k * width), ChunksMut(gaussians, k * width)),
+            ChunksMut(&mut self.mask, width),
         );
+        for_each(rows, ROWS_AT_A_TIME, |y, ((weights, gaussians), mask)| {
+            apply_row(&update, frame, y, weights, gaussians, mask);
+        });
         Ok(&self.mask)
     }
 

@@ -11,7 +11,6 @@
 
 use rand::{Rng, RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use rayon::prelude::*;
 
 use super::{
     Covariance, FilterError, Observation, Proposal, State, Transition,
@@ -20,6 +19,7 @@ use super::{
     resampling::{Resample, Resampling},
     weights,
 };
+use crate::parallel::{Chunks, ChunksMut, for_each};
 
 /// Particles that one thread weighs at a time.
 const CHUNK: usize = 16;
@@ -28,6 +28,7 @@ const STREAM: usize = 256;
 
 /// How a particle filter normalises, resamples and estimates.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct ParticleFilterOptions<S = Resampling> {
     /// Scheme that draws the ancestors.
     pub resampling: S,
@@ -68,11 +69,9 @@ pub struct ParticleEstimate<const N: usize> {
     pub resampled: bool,
 }
 
-/// Particles that share a stream of random numbers: where they go to, where they come from, and their log-weights.
-type Streamful<'a, const N: usize> = ((&'a mut [State<N>], &'a [State<N>]), &'a mut [f64]);
-
 /// Weighted particles that stand for p(x_k | y_1:k).
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct ParticleFilter<const N: usize, S = Resampling> {
     options: ParticleFilterOptions<S>,
     on_one_thread: bool,
@@ -150,23 +149,18 @@ impl<const N: usize, S: Resample> ParticleFilter<N, S> {
         let seed = rng.random();
         std::mem::swap(&mut self.states, &mut self.spare);
         self.states.resize(self.spare.len(), State::zeros());
-        let propose = |(number, ((next, states), log_weights)): (usize, Streamful<'_, N>)| {
+        let (next, states, log_weights) = (&mut self.states, &self.spare, &mut self.log_weights);
+        // A stream of random numbers: where its particles go to, where they come from, and their log-weights.
+        let streams = (ChunksMut(next, STREAM), (Chunks(states, STREAM), ChunksMut(log_weights, STREAM)));
+        let least = if self.on_one_thread { usize::MAX / 2 } else { 1 };
+        for_each(streams, least, |number, (next, (states, log_weights))| {
             let mut rng = ChaCha8Rng::seed_from_u64(seed);
             rng.set_stream(number as u64);
             for ((next, state), log_weight) in next.iter_mut().zip(states).zip(log_weights) {
                 *next = proposal.sample(state, &mut rng);
                 *log_weight += transition.log_density(next, state) - proposal.log_density(next, state);
             }
-        };
-        let (next, states, log_weights) = (&mut self.states, &self.spare, &mut self.log_weights);
-        if self.on_one_thread {
-            let streams =
-                next.chunks_mut(STREAM).zip(states.chunks(STREAM)).zip(log_weights.chunks_mut(STREAM));
-            streams.enumerate().for_each(propose);
-        } else {
-            let streams = next.par_chunks_mut(STREAM).zip(states.par_chunks(STREAM));
-            streams.zip(log_weights.par_chunks_mut(STREAM)).enumerate().with_max_len(1).for_each(propose);
-        }
+        });
     }
 
     /// Steps 2 to 6: weighs the moved particles by the observation, in parallel, and resamples if need be.
@@ -208,11 +202,8 @@ impl<const N: usize, S: Resample> ParticleFilter<N, S> {
         if self.on_one_thread {
             observation.log_likelihoods(&self.states, &mut self.log_likelihoods);
         } else {
-            self.states
-                .par_chunks(CHUNK)
-                .zip(self.log_likelihoods.par_chunks_mut(CHUNK))
-                .with_max_len(1)
-                .for_each(|(states, out)| observation.log_likelihoods(states, out));
+            let chunks = (Chunks(&self.states, CHUNK), ChunksMut(&mut self.log_likelihoods, CHUNK));
+            for_each(chunks, 1, |_, (states, out)| observation.log_likelihoods(states, out));
         }
         for (log_weight, log_likelihood) in self.log_weights.iter_mut().zip(&self.log_likelihoods) {
             *log_weight += log_likelihood;

@@ -9,15 +9,18 @@
 //!
 //! The update of an online classifier is a new training on the memory's samples.
 
-use rayon::prelude::*;
-
 use super::{
     memory::{Label, SampleMemory},
     stump::{LANES, Rank, Split, Stump, TIED, best_splits, low_side, stump},
 };
+use crate::parallel::{Chunks, ChunksMut, for_each, for_each_with};
+
+/// Blocks of features that are worth a thread.
+const LEAST_BLOCKS: usize = 4;
 
 /// F: a sum of stumps.
 #[derive(Debug, Clone, Default, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct StrongClassifier {
     stumps: Vec<Stump>,
 }
@@ -36,6 +39,7 @@ impl StrongClassifier {
 
 /// How a strong classifier is trained.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct BoostingOptions {
     /// s: rounds, and so stumps.
     pub rounds: usize,
@@ -49,12 +53,16 @@ pub struct BoostingOptions {
 /// Trains strong classifiers; holds the scratch that training needs, so that a second training of the same size
 /// allocates nothing.
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct GentleAdaBoost {
     options: BoostingOptions,
     /// omega y of every sample; the weights sum to 1.
+    #[cfg_attr(feature = "save", serde(skip))]
     signed: Vec<f64>,
     /// For each block of features, the samples by rank.
+    #[cfg_attr(feature = "save", serde(skip))]
     ranks: Vec<Rank>,
+    #[cfg_attr(feature = "save", serde(skip))]
     splits: Vec<[Split; LANES]>,
 }
 
@@ -85,9 +93,11 @@ impl GentleAdaBoost {
         let blocks = memory.features().div_ceil(LANES);
         self.ranks.resize(blocks * n, [0; LANES]);
         self.splits.resize(blocks, [Split { gain: -1.0, last_low: 0 }; LANES]);
-        self.ranks.par_chunks_mut(n).enumerate().with_min_len(4).for_each_init(
+        for_each_with(
+            ChunksMut(&mut self.ranks, n),
+            LEAST_BLOCKS,
             || Vec::with_capacity(n),
-            |keys: &mut Vec<u64>, (block, ranks)| {
+            |keys: &mut Vec<u64>, block, ranks| {
                 for lane in 0..LANES {
                     // The last block repeats the last feature, which then loses every tie to itself.
                     let row = memory.row((block * LANES + lane).min(memory.features() - 1));
@@ -127,13 +137,12 @@ impl GentleAdaBoost {
         let total = signed.iter().sum::<f64>();
         let turns = self.options.turns.min(self.splits.len()).max(1);
         let turn = round % turns;
-        self.splits
-            .par_iter_mut()
-            .zip(self.ranks.par_chunks(n))
-            .skip(turn)
-            .step_by(turns)
-            .with_min_len(4)
-            .for_each(|(splits, ranks)| *splits = best_splits(ranks, signed, total));
+        let blocks = (self.splits.as_mut_slice(), Chunks(&self.ranks, n));
+        for_each(blocks, LEAST_BLOCKS * turns, |block, (splits, ranks)| {
+            if block % turns == turn {
+                *splits = best_splits(ranks, signed, total);
+            }
+        });
         let mut best: Option<(usize, Split)> = None;
         for (block, splits) in self.splits.iter().enumerate().skip(turn).step_by(turns) {
             for (lane, split) in splits.iter().enumerate() {

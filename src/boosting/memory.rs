@@ -2,6 +2,7 @@
 
 /// What a sample shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub enum Label {
     /// The target: y = +1.
     Target,
@@ -21,6 +22,7 @@ impl Label {
 
 /// Labelled feature vectors, stored a feature a row, so that training reads memory in order.
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct SampleMemory {
     features: usize,
     kept: usize,

@@ -10,6 +10,7 @@ use multiversion::multiversion;
 
 /// A weak classifier.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct Stump {
     /// k: which feature it reads.
     pub feature: usize,

@@ -7,6 +7,7 @@ use infopart::program;
 
 mod auto_init;
 mod background;
+mod completions;
 mod config;
 mod demo;
 mod demo_folder;
@@ -16,6 +17,7 @@ mod outputs;
 mod parameters;
 mod several;
 mod track;
+mod trax;
 mod values;
 
 const EXAMPLES: &str = "\
@@ -54,6 +56,12 @@ enum Command {
     /// Print every parameter with its default, meaning and unit, as a TOML that --config takes
     #[command(after_help = config::EXAMPLES)]
     Config(config::ConfigArgs),
+    /// Serve the tracker to a TraX client, such as the VOT toolkit, on standard input and output
+    #[command(after_help = trax::EXAMPLES)]
+    Trax(Box<trax::TraxArgs>),
+    /// Print what a shell needs to complete the program's words, or write man pages
+    #[command(after_help = completions::EXAMPLES)]
+    Completions(completions::CompletionsArgs),
     /// Compare state estimators on a simulated oscillator; needs no data
     #[command(after_help = estimate::EXAMPLES)]
     Estimate(estimate::EstimateArgs),
@@ -65,6 +73,8 @@ pub fn main() -> ExitCode {
         Command::Track(args) => track::track(&args),
         Command::Demo(args) => demo::demo(&args),
         Command::Background(args) => background::background(&args),
+        Command::Trax(args) => trax::trax(&args),
+        Command::Completions(args) => completions::completions(&args),
         Command::Config(args) => config::config(&args),
         Command::Estimate(args) => estimate::estimate(&args),
     };

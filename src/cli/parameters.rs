@@ -18,7 +18,7 @@ use infopart::{
 
 use super::values::parse_count;
 
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub struct ParameterArgs {
     /// What to track of the box: `part` (the upper 5/8), `whole`, or the upper fraction, such as 0.5 or 5/8
     /// [default: part]
@@ -43,6 +43,20 @@ pub struct ParameterArgs {
 }
 
 impl ParameterArgs {
+    /// With the seed of a variable of the environment, if it is set and --seed is not given.
+    pub fn with_seed_of(&self, variable: &str) -> Result<Self> {
+        let Some(value) = std::env::var_os(variable).filter(|_| self.seed.is_none()) else {
+            return Ok(self.clone());
+        };
+        let seed = value.to_str().and_then(|text| text.parse().ok()).ok_or_else(|| {
+            BadInput(format!(
+                "{variable} is {}; set it to a whole number from 0 on, or unset it",
+                value.display()
+            ))
+        })?;
+        Ok(Self { seed: Some(seed), ..self.clone() })
+    }
+
     /// Flags over the file over the preset, checked.
     pub fn resolve(&self) -> Result<CheckedParameters> {
         let preset = Parameters::preset(&self.preset).context("--preset")?;

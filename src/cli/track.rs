@@ -6,9 +6,8 @@ use anyhow::{Context, Result};
 use clap::Args;
 use infopart::{
     geometry::{Origin, Rect, Region},
-    output::{Summary, tracker_title},
     program::{self, BadInput},
-    run::{Pace, RunReport, run_at},
+    run::{Pace, RunReport, Summary, run_at, tracker_title},
     sequence::{self, OpenOptions, Sequence},
     tracker::{
         CheckedParameters, InfoPart, Tracker,
@@ -238,7 +237,7 @@ impl TrackArgs {
     }
 }
 
-fn thread_pool(threads: usize) -> Result<Arc<ThreadPool>> {
+pub fn thread_pool(threads: usize) -> Result<Arc<ThreadPool>> {
     let pool = ThreadPoolBuilder::new().num_threads(threads).build();
     let pool = pool.map_err(|error| BadInput(format!("--threads {threads}: {error}; give fewer threads")))?;
     Ok(Arc::new(pool))

@@ -30,6 +30,7 @@ const RHO_GROWTH: f32 = 10.0;
 
 /// How a filter is learnt.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct FilterOptions {
     /// Cells along the window's side, even.
     pub side: usize,
@@ -45,6 +46,7 @@ pub struct FilterOptions {
 
 /// A filter over windows that a target fills always alike.
 #[derive(Clone)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct CorrelationFilter {
     options: FilterOptions,
     fourier: Fourier,
@@ -68,6 +70,7 @@ pub struct CorrelationFilter {
 
 /// Spectra of one channel.
 #[derive(Clone)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 struct Channel {
     x: Vec<Complex32>,
     f: Vec<Complex32>,

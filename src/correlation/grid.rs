@@ -28,6 +28,7 @@ const CLIP: f32 = 0.2;
 
 /// Cells of a window, a plane a channel.
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct Grid {
     side: usize,
     taper: Vec<f32>,

@@ -8,6 +8,7 @@ use crate::{
 
 /// Scratch for reading a lattice of a number of columns and rows.
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Lattice {
     columns: Vec<Line>,
     rows: Vec<Line>,
@@ -16,6 +17,7 @@ pub(super) struct Lattice {
 
 /// A line of the lattice between two of the integral images'.
 #[derive(Debug, Clone, Copy, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 struct Line {
     before: usize,
     after: usize,

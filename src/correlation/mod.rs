@@ -7,6 +7,7 @@
 pub mod filter;
 pub mod grid;
 mod lattice;
+mod line_transform;
 pub mod response;
 pub mod scale;
 pub mod spectrum;

@@ -4,6 +4,7 @@ use super::window::Window;
 
 /// Responses over a window, about 1 where the target is as learnt.
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct Response {
     side: usize,
     window: Window,
@@ -12,6 +13,7 @@ pub struct Response {
 
 /// The best place of a response.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct Peak {
     /// Frame pixels from the left edge.
     pub x: f64,

@@ -12,10 +12,9 @@
 //! The correlation over the sizes takes the scalar products of all pairs of samples, so that only S numbers are ever
 //! transformed.
 
-use std::{f64::consts::PI, sync::Arc};
+use std::f64::consts::PI;
 
 use realfft::num_complex::Complex32;
-use rustfft::{Fft, FftPlanner};
 
 use crate::{
     features::{
@@ -26,7 +25,9 @@ use crate::{
     geometry::Rect,
 };
 
-use super::{grid::colour_differences, lattice::Lattice, response::cubic_weights};
+use super::{
+    grid::colour_differences, lattice::Lattice, line_transform::LineTransform, response::cubic_weights,
+};
 
 /// Numbers a cell has.
 const NUMBERS: usize = BINS + CHANNELS;
@@ -45,6 +46,7 @@ const LABEL_SIGMA: f64 = 1.0;
 
 /// What sizes a filter looks at, and how it learns.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct ScaleOptions {
     /// S: sizes, odd, >= 5.
     pub sizes: usize,
@@ -56,6 +58,7 @@ pub struct ScaleOptions {
 
 /// A filter over sizes.
 #[derive(Clone)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct ScaleFilter {
     options: ScaleOptions,
     /// ln of the ratio of two sizes.
@@ -66,9 +69,7 @@ pub struct ScaleFilter {
     taper: Vec<f32>,
     /// Spectrum of the Gaussian, which is real.
     label: Vec<f32>,
-    forward: Arc<dyn Fft<f32>>,
-    inverse: Arc<dyn Fft<f32>>,
-    transform_scratch: Vec<Complex32>,
+    transform: LineTransform,
     /// The samples of a frame, one size after another.
     samples: Vec<f32>,
     mean: Vec<f32>,
@@ -88,17 +89,15 @@ impl ScaleFilter {
         let sizes = options.sizes;
         let rows = ((COLUMNS as f64 * aspect).round() as usize).clamp(2, 3 * COLUMNS);
         let length = COLUMNS * rows * NUMBERS;
-        let mut planner = FftPlanner::new();
-        let (forward, inverse) = (planner.plan_fft_forward(sizes), planner.plan_fft_inverse(sizes));
+        let mut transform = LineTransform::new(sizes);
         let mut label: Vec<Complex32> = (0..sizes)
             .map(|i| {
                 let steps = i.min(sizes - i) as f64 / LABEL_SIGMA;
                 Complex32::new((-0.5 * steps * steps).exp() as f32, 0.0)
             })
             .collect();
-        forward.process(&mut label);
+        transform.forward(&mut label);
         let half = (sizes / 2) as f64;
-        let scratch = forward.get_inplace_scratch_len().max(inverse.get_inplace_scratch_len());
         Self {
             options,
             step: options.ratio.ln(),
@@ -108,9 +107,7 @@ impl ScaleFilter {
                 .map(|i| (0.5 + 0.5 * (PI * (i as f64 - half) / (half + 1.0)).cos()) as f32)
                 .collect(),
             label: label.iter().map(|value| value.re).collect(),
-            forward,
-            inverse,
-            transform_scratch: vec![Complex32::default(); scratch],
+            transform,
             samples: vec![0.0; length * sizes],
             mean: vec![0.0; length * sizes],
             energy: vec![0.0; sizes],
@@ -130,7 +127,7 @@ impl ScaleFilter {
         let Self { samples, mean, .. } = self;
         mean.iter_mut().zip(samples.iter()).for_each(|(mean, sample)| *mean += rate * (sample - *mean));
         correlate(&self.samples, &self.samples, self.length, &mut self.spectrum);
-        self.forward.process_with_scratch(&mut self.spectrum, &mut self.transform_scratch);
+        self.transform.forward(&mut self.spectrum);
         let Self { energy, spectrum, .. } = self;
         energy.iter_mut().zip(spectrum.iter()).for_each(|(mean, new)| *mean += rate * (new.re - *mean));
         self.respond(1.0);
@@ -175,13 +172,13 @@ impl ScaleFilter {
     /// Step 3.
     fn respond(&mut self, scale: f32) {
         correlate(&self.mean, &self.samples, self.length, &mut self.spectrum);
-        self.forward.process_with_scratch(&mut self.spectrum, &mut self.transform_scratch);
+        self.transform.forward(&mut self.spectrum);
         let sizes = self.options.sizes as f32;
         let lambda = (REGULARISATION * self.energy.iter().sum::<f32>() / sizes).max(LEAST_REGULARISATION);
         for ((value, label), energy) in self.spectrum.iter_mut().zip(&self.label).zip(&self.energy) {
             *value *= label / (energy + lambda);
         }
-        self.inverse.process_with_scratch(&mut self.spectrum, &mut self.transform_scratch);
+        self.transform.inverse(&mut self.spectrum);
         for (response, value) in self.response.iter_mut().zip(&self.spectrum) {
             *response = scale * value.re / sizes;
         }

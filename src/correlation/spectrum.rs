@@ -8,6 +8,8 @@ use rustfft::{Fft, FftPlanner};
 
 /// Transforms images of one side.
 #[derive(Clone)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "save", serde(from = "usize", into = "usize"))]
 pub struct Fourier {
     side: usize,
     rows_forward: Arc<dyn RealToComplex<f32>>,
@@ -18,11 +20,24 @@ pub struct Fourier {
 
 /// What one transform at a time works on.
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct Scratch {
     row: Vec<f32>,
     half_row: Vec<Complex32>,
     columns: Vec<Complex32>,
     inner: Vec<Complex32>,
+}
+
+impl From<usize> for Fourier {
+    fn from(side: usize) -> Self {
+        Self::new(side)
+    }
+}
+
+impl From<Fourier> for usize {
+    fn from(fourier: Fourier) -> Self {
+        fourier.side
+    }
 }
 
 impl Fourier {

@@ -4,6 +4,7 @@ use crate::geometry::Rect;
 
 /// A square of a frame: its centre and side in frame pixels.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct Window {
     /// Centre, frame pixels from the left edge.
     pub x: f64,

@@ -9,15 +9,16 @@
 //! All sums are whole numbers and exact. Bands go through steps 1 and 2 in parallel.
 
 use multiversion::multiversion;
-use rayon::prelude::*;
 
-use crate::frame::FrameView;
+use crate::{
+    frame::FrameView,
+    parallel::{ChunksMut, for_each},
+};
 
 use super::{
     cells::{CHANNELS, Cells},
-    gradient::GradientRows,
-    hog::BINS,
-    region::SearchRegion,
+    gradient::{BINS, GradientRows},
+    search_region::SearchRegion,
 };
 
 /// Numbers of an entry: the orientations' sums, those of red, green and blue, and one that is always 0.
@@ -78,8 +79,8 @@ impl BlockIntegrals {
         self.bands.resize_with(rows.div_ceil(ROWS_PER_BAND), Band::default);
         let (top, sums) = self.sums.split_at_mut(stride);
         top.fill([0; LANES]);
-        let bands = sums.par_chunks_mut(ROWS_PER_BAND * stride).zip(&mut self.bands);
-        bands.enumerate().for_each(|(number, (sums, band))| {
+        let bands = (ChunksMut(sums, ROWS_PER_BAND * stride), self.bands.as_mut_slice());
+        for_each(bands, 1, |number, (sums, band)| {
             band.sum(frame, (region, block), number * ROWS_PER_BAND, sums);
         });
         self.add_above(stride);

@@ -7,7 +7,7 @@ use std::ops::Range;
 
 use crate::frame::{FrameView, PixelFormat};
 
-use super::region::SearchRegion;
+use super::search_region::SearchRegion;
 
 /// Colour channels that features may read.
 pub const CHANNELS: usize = 3;

@@ -27,6 +27,7 @@ const RING: (f64, f64) = (1.5, 1.25);
 
 /// The colours of a target and of what surrounds it.
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct ForegroundModel {
     rate: f32,
     learnt: bool,
@@ -99,6 +100,7 @@ impl ForegroundModel {
 
 /// Foreground probabilities over a window of a frame. Reused from frame to frame.
 #[derive(Debug, Clone, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct ForegroundMap {
     lattice: PixelLattice,
     /// Sums of the probabilities, and of the places that lie in the frame, above and left of each line of the lattice.
@@ -166,6 +168,7 @@ impl ForegroundMap {
 
 /// Places at which pixels are looked at: the middles of squares of `step` pixels, at least 1.
 #[derive(Debug, Clone, Copy)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 struct PixelLattice {
     x: f64,
     y: f64,

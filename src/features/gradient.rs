@@ -5,7 +5,10 @@ use std::ops::Range;
 
 use multiversion::multiversion;
 
-use super::{cells::Cells, hog::BINS};
+use super::cells::Cells;
+
+/// Unsigned orientations that gradients are told apart by.
+pub const BINS: usize = 8;
 
 /// A gradient's magnitude, split between two neighbouring bins.
 #[derive(Debug, Clone, Copy)]

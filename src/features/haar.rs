@@ -11,6 +11,7 @@ use super::region::{BoxInRegion, RegionIntegrals};
 
 /// How a feature's rectangle is cut into white and black, as (columns, rows) of equal parts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub enum HaarMask {
     /// Left white, right black.
     LeftRight,
@@ -43,6 +44,7 @@ impl HaarMask {
 
 /// A Haar-like feature. Its rectangle is given as shares of the tracked region, in [0, 1].
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub struct HaarFeature {
     /// White and black.
     pub mask: HaarMask,

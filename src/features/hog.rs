@@ -10,8 +10,8 @@
 
 use super::region::{BoxInRegion, RegionIntegrals};
 
-/// Unsigned orientation bins over the half turn.
-pub const BINS: usize = 8;
+pub use super::gradient::BINS;
+
 /// Cells along each side of the box.
 pub const CELLS: usize = 4;
 /// Numbers in a descriptor.
@@ -21,7 +21,26 @@ const CLIP: f32 = 0.2;
 
 /// A descriptor of norm 1, or all zero where there is no gradient at all.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "save", serde(try_from = "Vec<f32>", into = "Vec<f32>"))]
 pub struct Hog(pub [f32; LENGTH]);
+
+#[cfg(feature = "save")]
+impl From<Hog> for Vec<f32> {
+    fn from(hog: Hog) -> Self {
+        hog.0.to_vec()
+    }
+}
+
+#[cfg(feature = "save")]
+impl TryFrom<Vec<f32>> for Hog {
+    type Error = String;
+
+    fn try_from(numbers: Vec<f32>) -> Result<Self, String> {
+        let wrong = |numbers: Vec<f32>| format!("a HOG of {} numbers instead of {LENGTH}", numbers.len());
+        numbers.try_into().map(Self).map_err(wrong)
+    }
+}
 
 impl Hog {
     /// The descriptor of a hypothesis. What lies outside the region of `integrals` is cut off.

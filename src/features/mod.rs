@@ -9,6 +9,7 @@ mod gradient;
 pub mod haar;
 pub mod hog;
 pub mod region;
+mod search_region;
 
 #[cfg(test)]
 pub(crate) mod reference;

@@ -8,32 +8,42 @@ use crate::{
     tracker::{BoxWarning, Estimate, Tracker},
 };
 
+#[cfg(feature = "render")]
 mod annotate;
+#[cfg(feature = "render")]
 pub mod canvas;
+#[cfg(feature = "render")]
 mod contact_sheet;
 mod destination;
 mod error;
+#[cfg(feature = "render")]
 mod legend;
 mod partial_file;
+#[cfg(feature = "render")]
 mod pictures;
+#[cfg(feature = "cli")]
 mod progress;
 mod rows;
-mod summary;
 #[cfg(test)]
 pub(crate) mod testing;
 mod text_table;
+#[cfg(feature = "render")]
 mod video;
 
+#[cfg(feature = "render")]
 pub use annotate::{annotate, rgb_from_view};
+#[cfg(feature = "render")]
 pub use contact_sheet::{ContactSheet, SheetSampler, Tile};
 pub use destination::{Destination, StandardOutput};
 pub use error::OutputError;
 pub use partial_file::PartialFile;
+#[cfg(feature = "render")]
 pub use pictures::PictureFolder;
+#[cfg(feature = "cli")]
 pub use progress::Progress;
 pub use rows::{RowFormat, RowOptions, RowWriter};
-pub use summary::{Summary, tracker_title};
 pub use text_table::TextTable;
+#[cfg(feature = "render")]
 pub use video::{VIDEO_EXTENSIONS, VideoWriter};
 
 /// What happened in one frame of the loop.

@@ -51,7 +51,8 @@ fn probe(bytes: &[u8]) -> Result<(usize, usize), String> {
     Ok((width as usize, height as usize))
 }
 
-fn decode(bytes: &[u8]) -> Result<Frame, String> {
+/// [`decode_image`] for the bytes of a file.
+pub(crate) fn decode(bytes: &[u8]) -> Result<Frame, String> {
     let format = format_of(bytes)?;
     if format == ImageFormat::Jpeg && !jpeg_is_whole(bytes) {
         return Err("the file is truncated".to_owned());

@@ -34,6 +34,7 @@ mod size_guard;
 mod video;
 mod walker;
 
+pub(crate) use decode::decode as decode_bytes;
 pub use decode::{decode_image, probe_image};
 pub use error::{RowProblem, SequenceError};
 pub use ground_truth::{parse_boxes, parse_ground_truth, read_boxes, read_ground_truth};

@@ -60,6 +60,7 @@ pub(super) struct Belief {
 
 /// Turns evidence into belief, frame after frame.
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Judge {
     lowest_log_odds: f64,
 }

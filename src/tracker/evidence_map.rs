@@ -19,6 +19,7 @@ const BORDER: usize = 2;
 
 /// A place that the cues answer to.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Peak {
     /// Frame pixels from the left edge.
     pub x: f64,
@@ -38,6 +39,7 @@ impl Peak {
 
 /// Scratch for finding peaks. Reused from frame to frame.
 #[derive(Debug, Clone, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct EvidenceMap {
     values: Vec<f64>,
     summits: Vec<usize>,

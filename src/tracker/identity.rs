@@ -33,6 +33,7 @@ const FAR: f32 = 1.0;
 
 /// What a part looks like.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Portrait {
     hog: Hog,
     colours: [[f32; CHANNELS]; COLOUR_CELLS.0 * COLOUR_CELLS.1],
@@ -63,6 +64,7 @@ impl Portrait {
 
 /// The memory.
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Identity {
     own: Vec<Portrait>,
     others: Vec<Portrait>,

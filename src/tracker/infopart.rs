@@ -17,8 +17,6 @@
 //! The correlation filter is the step that the paper names as its next; without the cues over the window (weight 0) all else is
 //! as printed.
 
-use std::sync::Arc;
-
 use crate::{
     bayes::{
         Observation,
@@ -31,6 +29,7 @@ use crate::{
     },
     frame::{FrameStamp, FrameView, PixelFormat},
     geometry::{Rect, Region},
+    parallel::{Threads, join},
 };
 use rand::RngExt;
 
@@ -68,14 +67,22 @@ const SURE: f64 = 0.85;
 /// The InfoPart tracker.
 pub struct InfoPart {
     parameters: CheckedParameters,
-    pool: Option<Arc<rayon::ThreadPool>>,
+    threads: Threads,
     target: Option<Target>,
     integrals: RegionIntegrals,
     stopwatch: Stopwatch,
 }
 
+/// What a tracker is but for scratch and threads.
+#[cfg(feature = "save")]
+pub(super) struct Unsaved<'a> {
+    pub parameters: &'a CheckedParameters,
+    pub target: Option<&'a Target>,
+}
+
 /// Everything known of the target being tracked.
-struct Target {
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Target {
     frame_size: (usize, usize),
     /// h / w of the part.
     aspect: f64,
@@ -91,17 +98,18 @@ struct Target {
     judge: Judge,
     search: Search,
     gate: LearningGate,
+    #[cfg_attr(feature = "save", serde(skip))]
     set_estimates: Vec<ParticleEstimate<3>>,
     /// Scratch: parts where the cues answer and the target is not.
     others: Vec<Rect>,
 }
 
 impl InfoPart {
-    /// A tracker that works in the thread pool it is called from (rayon's global one unless that is changed).
+    /// A tracker that works in the thread pool it is called from, or without the feature `threads` on the calling thread.
     pub fn new(parameters: CheckedParameters) -> Self {
         Self {
             parameters,
-            pool: None,
+            threads: Threads::default(),
             target: None,
             integrals: RegionIntegrals::default(),
             stopwatch: Stopwatch::default(),
@@ -109,8 +117,19 @@ impl InfoPart {
     }
 
     /// A tracker that works in `pool`.
-    pub fn with_pool(parameters: CheckedParameters, pool: Arc<rayon::ThreadPool>) -> Self {
-        Self { pool: Some(pool), ..Self::new(parameters) }
+    #[cfg(feature = "threads")]
+    pub fn with_pool(parameters: CheckedParameters, pool: std::sync::Arc<rayon::ThreadPool>) -> Self {
+        Self::with_threads(parameters, Threads::Pool(pool))
+    }
+
+    /// A tracker that works where `threads` says.
+    pub fn with_threads(parameters: CheckedParameters, threads: Threads) -> Self {
+        Self { threads, ..Self::new(parameters) }
+    }
+
+    /// Works where `threads` says from now on.
+    pub fn set_threads(&mut self, threads: Threads) {
+        self.threads = threads;
     }
 
     /// The parameters it runs with.
@@ -118,12 +137,20 @@ impl InfoPart {
         &self.parameters
     }
 
+    /// What is saved of it.
+    #[cfg(feature = "save")]
+    pub(super) fn unsaved(&self) -> Unsaved<'_> {
+        Unsaved { parameters: &self.parameters, target: self.target.as_ref() }
+    }
+
+    /// A tracker that goes on with what was saved.
+    #[cfg(feature = "save")]
+    pub(super) fn resumed(parameters: CheckedParameters, target: Option<Target>) -> Self {
+        Self { target, ..Self::new(parameters) }
+    }
+
     fn in_pool<T: Send>(&mut self, work: impl FnOnce(&mut Self) -> T + Send) -> T {
-        match self.pool.clone() {
-            Some(pool) => pool.install(|| work(self)),
-            // Into rayon's pool once, instead of once for each loop that it shares out.
-            None => rayon::scope(|_| work(self)),
-        }
+        self.threads.clone().run(|| work(self))
     }
 
     /// Steps 1 and 2.
@@ -250,7 +277,7 @@ impl Target {
             }
         };
         if cues.look_over_window() {
-            rayon::join(move_particles, || cues.look_closer(&full));
+            join(move_particles, || cues.look_closer(&full));
         } else {
             move_particles();
         }
@@ -356,7 +383,7 @@ impl Target {
         // Without the window's cues samples are taken where the particles are, as printed.
         let cover_samples = cues.look_over_window();
         let (mut of_part, of_window) = cues.split();
-        rayon::join(
+        join(
             || {
                 if !train {
                     return;

@@ -8,6 +8,7 @@ const RATE: f64 = 0.05;
 
 /// Remembers how well the filter answered.
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct LearningGate {
     least_trust: f64,
     /// The response must be above this share of its running mean.

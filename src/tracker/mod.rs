@@ -13,6 +13,8 @@ mod motion;
 mod parameters;
 mod proposal;
 mod sampling;
+#[cfg(feature = "save")]
+mod saved;
 mod search;
 mod stopwatch;
 mod streams;
@@ -28,6 +30,8 @@ use crate::{
 pub use estimate::{BoxWarning, Estimate, Evidence, StageTime, Status, WeightedBox};
 pub use infopart::InfoPart;
 pub use parameters::{CheckedParameters, ParameterError, Parameters, SCHEMA_VERSION};
+#[cfg(feature = "save")]
+pub use saved::LoadError;
 pub use search::SearchExtent;
 
 /// A single-object tracker. Object-safe and `Send`; it holds no global state, so any number may run at once.

@@ -23,6 +23,7 @@ pub(super) fn state_of(part: &Rect) -> PartState {
 
 /// Where a part may be: its centre near the frame, its width between two limits.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Limits {
     /// Width of the frame, pixels.
     pub frame_width: f64,

@@ -19,6 +19,7 @@ const OTHER_JITTER: f64 = 2.0;
 
 /// How boxes are drawn around a target.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Sampler {
     jitter: f64,
     jitter_share: f64,

@@ -68,6 +68,7 @@ pub(super) struct Suspect {
 
 /// The state of a search.
 #[derive(Debug, Clone, Default)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Search {
     lost: u32,
     unseen: u32,

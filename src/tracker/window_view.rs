@@ -38,7 +38,9 @@ const LEAST_OWN: f32 = 0.25;
 const LEAST_SEPARATION: f32 = 0.15;
 
 /// A window around the target, as the cues see it.
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct WindowView {
+    #[cfg_attr(feature = "save", serde(skip))]
     integrals: BlockIntegrals,
     grid: Grid,
     window: Window,

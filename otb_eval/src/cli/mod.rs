@@ -9,6 +9,7 @@ use otb_eval::{
     catalogue::CatalogueError,
     convert::ConvertError,
     dataset::DatasetError,
+    external::ListError,
     protocol::{HiddenError, ProtocolError},
     results::ResultsError,
     runner::FactoryError,
@@ -27,6 +28,7 @@ mod report;
 mod run;
 mod score;
 mod scored;
+mod supervise;
 
 const EXAMPLES: &str = "\
 Examples, in the order of an evaluation (otb and people are folders of OTB sequences):
@@ -56,6 +58,9 @@ struct Cli {
     command: Command,
 }
 
+/// The command that stands between an evaluation and a tracker in another process.
+const SUPERVISE: &str = "supervise";
+
 #[derive(Debug, Subcommand)]
 enum Command {
     /// Tell what data holds: frames, rows, odd and damaged files, labels that the boxes contradict
@@ -76,6 +81,9 @@ enum Command {
     /// Turn results from one toolkit's layout into another's
     #[command(after_help = convert::EXAMPLES)]
     Convert(convert::ConvertArgs),
+    /// Run a tracker's command so that it ends when the evaluation does; `run` uses it
+    #[command(name = SUPERVISE, hide = true)]
+    Supervise(supervise::SuperviseArgs),
     /// Draw success and precision plots
     #[command(after_help = plot::EXAMPLES)]
     Plot(Box<plot::PlotArgs>),
@@ -93,6 +101,7 @@ pub fn main() -> ExitCode {
         Command::Score(args) => score::score(&args),
         Command::Compare(args) => compare::run(&args),
         Command::Convert(args) => convert::run(&args),
+        Command::Supervise(args) => return supervise::supervise(&args),
         Command::Plot(args) => plot::plot(&args),
         Command::Report(args) => report::report(&args),
     };
@@ -109,6 +118,7 @@ fn code_of(error: &Error) -> Option<u8> {
         || error.is::<ProtocolError>()
         || error.is::<HiddenError>()
         || error.is::<FactoryError>()
+        || error.is::<ListError>()
         || error.is::<StoreError>()
         || error.is::<ResultsError>()
         || error.is::<ConvertError>();

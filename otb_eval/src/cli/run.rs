@@ -13,7 +13,7 @@ use otb_eval::{
 
 use super::{
     inputs::note,
-    jobs::{JobArgs, Work},
+    jobs::{JobArgs, Work, parse_seconds},
 };
 
 pub const EXAMPLES: &str = "\
@@ -26,6 +26,13 @@ Half of the jobs here and, with --shard 2/2, the other half elsewhere, into one 
 
 A tracker of your own, from `infopart config > fast.toml` and an editor:
   otb_eval run --data otb/Crossing --config fast=fast.toml --out results
+
+A tracker of anybody's, in any language, that speaks TraX on standard input and output; docs/trackers.md has more:
+  otb_eval run --data otb --tracker mil='python -m infopart.trax cv2:TrackerMIL_create' --timeout 600 --out results
+
+Each job of such a tracker starts its own process, and a crash, a hang or nonsense fails that job alone. It is told its seed in \
+INFOPART_SEED. Times are its own if it tells them with every answer, else from a frame sent to its answer; SEQ.external.json \
+says which, and has the latter. Starting it belongs to neither. Its results are not promised to come out the same again.
 
 Every result is written whole, when its job ends. Run the same command again to continue where it was stopped; jobs \
 that failed are tried again. Results of other parameters or another version are refused, not mixed. The boxes do not \
@@ -51,15 +58,10 @@ pub struct RunArgs {
     timeout: Option<Duration>,
 }
 
-fn parse_seconds(word: &str) -> Result<Duration, String> {
-    let seconds = word.parse::<f64>().ok().filter(|seconds| *seconds > 0.0);
-    let duration = seconds.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
-    duration.ok_or_else(|| format!("`{word}` is no time; give seconds, for example 600"))
-}
-
 pub fn run(args: &RunArgs) -> Result<()> {
     let mut work = args.jobs_of.work()?;
     let options = args.options();
+    prepare(&mut work);
     claim(&work, options)?;
     let total = work.jobs.len();
     let left: Vec<Job> = work.jobs.iter().filter(|job| !is_done(&work, job)).cloned().collect();
@@ -104,6 +106,19 @@ fn is_done(work: &Work, job: &Job) -> bool {
         note(&format!("{}: the result there is damaged, and is made again: {damage}", job.id()));
     }
     kept == Kept::Whole
+}
+
+/// Hears what trackers in other processes say of themselves; of one that says nothing sensible no job is run.
+fn prepare(work: &mut Work) {
+    let Work { factories, jobs, problems, .. } = work;
+    factories.retain_mut(|factory| match factory.prepare() {
+        Ok(()) => true,
+        Err(error) => {
+            problems.tell(&error);
+            jobs.retain(|job| job.tracker != factory.name());
+            false
+        }
+    });
 }
 
 /// Makes sure that every tracker's folder is of the same parameters, before anything is run.

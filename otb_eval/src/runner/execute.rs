@@ -12,16 +12,21 @@ use infopart::{
     sequence::{OpenOptions, open},
 };
 
-use super::{Job, TrackerFactory};
-use crate::words::{of_sequence, without_flags};
+use super::{Job, Made, TrackerFactory};
+use crate::{
+    external,
+    words::{of_sequence, without_flags},
+};
 
 /// What a job gives.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Recording {
     /// The boxes, a row a frame, with the truth's origin; the first is the box given.
     pub rows: Vec<Rect>,
-    /// Seconds that `init` and then each `update` took.
+    /// Seconds that `init` and then each `update` took, by the tracker's own account if it gives one.
     pub seconds: Vec<f64>,
+    /// Seconds from each image sent to a tracker in another process to its answer.
+    pub round_trips: Option<Vec<f64>>,
 }
 
 impl Observer for Recording {
@@ -56,6 +61,10 @@ pub fn execute(job: &Job, factory: &dyn TrackerFactory, stop: &AtomicBool) -> Re
 
 fn track(job: &Job, factory: &dyn TrackerFactory, stop: &AtomicBool) -> Result<Recording, JobFailure> {
     let failed = |error: &dyn std::fmt::Display| JobFailure::Failed(without_flags(&error.to_string()));
+    let mut tracker = match factory.create(job.seed).map_err(|error| failed(&error))? {
+        Made::Here(tracker) => tracker,
+        Made::Command(tracker) => return external::record(job, &tracker, stop),
+    };
     let first = job.first_frame();
     let options = OpenOptions {
         target: job.folder.target,
@@ -65,7 +74,6 @@ fn track(job: &Job, factory: &dyn TrackerFactory, stop: &AtomicBool) -> Result<R
     };
     let mut sequence =
         open(&job.folder.path.to_string_lossy(), &options).map_err(|error| failed(&of_sequence(&error)))?;
-    let mut tracker = factory.create(job.seed).map_err(|error| failed(&error))?;
     let mut recording = Recording::default();
     let first_box = Origin::One.to_frame(job.segment.first_box);
     run(sequence.source.as_mut(), &[], tracker.as_mut(), first_box, &mut [&mut recording], stop).map_err(

@@ -1,5 +1,4 @@
-//! Who makes trackers. The runner knows a tracker only by its factory, so that one in another process can stand
-//! behind the same trait.
+//! Who makes trackers. The runner knows a tracker only by its factory, which makes one in this process or names a command.
 
 use infopart::{
     geometry::Region,
@@ -11,6 +10,8 @@ use infopart::{
 use serde::Serialize;
 use serde_json::Value;
 use thiserror::Error;
+
+use crate::external::ExternalTracker;
 
 /// Names that [`named_factory`] knows: InfoPart's default, the same on the whole body, the method as printed, and the
 /// colour-histogram particle filter.
@@ -27,11 +28,32 @@ pub trait TrackerFactory: Send + Sync {
     /// The program that tracks, with its version.
     fn program(&self) -> String;
 
+    /// Called once before a run, ahead of [`parameters`](Self::parameters) and [`program`](Self::program).
+    ///
+    /// # Errors
+    /// [`FactoryError`] if no job of the tracker can be done.
+    fn prepare(&mut self) -> Result<(), FactoryError> {
+        Ok(())
+    }
+
+    /// Seeds that are worth running: 1 to this number; `None` if all are.
+    fn most_seeds(&self) -> Option<u64> {
+        None
+    }
+
     /// A new tracker whose randomness comes from `seed` alone. It works in the rayon pool that it is called from.
     ///
     /// # Errors
     /// [`FactoryError`] if the tracker cannot be made.
-    fn create(&self, seed: u64) -> Result<Box<dyn Tracker>, FactoryError>;
+    fn create(&self, seed: u64) -> Result<Made, FactoryError>;
+}
+
+/// A tracker that was made.
+pub enum Made {
+    /// One in this process, which is handed pixels.
+    Here(Box<dyn Tracker>),
+    /// A command, which is handed the paths of images.
+    Command(ExternalTracker),
 }
 
 /// A tracker that cannot be made.
@@ -39,10 +61,20 @@ pub trait TrackerFactory: Send + Sync {
 #[non_exhaustive]
 pub enum FactoryError {
     /// No tracker of that name.
-    #[error("there is no tracker `{name}`; choose from: {}; or give one of your own with --config {name}=FILE.toml", NAMES.join(", "))]
+    #[error("there is no tracker `{name}`; choose from: {}; or give one of your own with --config {name}=FILE.toml or --tracker {name}='COMMAND'", NAMES.join(", "))]
     Unknown {
         /// The name as given.
         name: String,
+    },
+    /// A program that cannot be spoken to.
+    #[error("tracker {name}: `{command}`: {reason}; none of its jobs is run")]
+    External {
+        /// The tracker.
+        name: String,
+        /// The line that starts it.
+        command: String,
+        /// What is wrong with it.
+        reason: String,
     },
     /// Parameters out of their range.
     #[error("tracker {name}: {source}")]
@@ -127,10 +159,13 @@ impl<P: TrackerParameters> TrackerFactory for OwnFactory<P> {
         format!("infopart {}", infopart::VERSION)
     }
 
-    fn create(&self, seed: u64) -> Result<Box<dyn Tracker>, FactoryError> {
+    fn create(&self, seed: u64) -> Result<Made, FactoryError> {
         let mut parameters = self.parameters.clone();
         parameters.set_seed(seed);
-        parameters.start().map_err(|source| FactoryError::Parameters { name: self.name.clone(), source })
+        parameters
+            .start()
+            .map(Made::Here)
+            .map_err(|source| FactoryError::Parameters { name: self.name.clone(), source })
     }
 }
 
@@ -183,6 +218,6 @@ mod tests {
         assert_ne!(seven, named_factory("whole-body").unwrap().parameters());
         let colour = named_factory("colour").unwrap();
         assert!(colour.parameters().get("seed").is_none());
-        assert_eq!(colour.create(3).unwrap().name(), "colour");
+        assert!(matches!(colour.create(3).unwrap(), Made::Here(tracker) if tracker.name() == "colour"));
     }
 }

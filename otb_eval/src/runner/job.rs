@@ -69,6 +69,11 @@ impl Job {
         PathBuf::from(format!("{}_time.txt", self.id()))
     }
 
+    /// The path of what is told of a tracker in another process, below the results' folder.
+    pub fn external_path(&self) -> PathBuf {
+        PathBuf::from(format!("{}.external.json", self.id()))
+    }
+
     /// The path of what is told of a failure, below the results' folder.
     pub fn failure_path(&self) -> PathBuf {
         PathBuf::from(format!("{}.failed.json", self.id()))

@@ -11,7 +11,7 @@ mod pool;
 
 pub use execute::{JobFailure, Recording, execute};
 pub use factory::{
-    ColourFactory, FactoryError, InfoPartFactory, NAMES, OwnFactory, TrackerFactory, TrackerParameters,
+    ColourFactory, FactoryError, InfoPartFactory, Made, NAMES, OwnFactory, TrackerFactory, TrackerParameters,
     named_factory,
 };
 pub use job::{Job, stem};

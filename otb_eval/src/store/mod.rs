@@ -100,6 +100,12 @@ impl Store {
         }
         let record = Record::new(rows.as_bytes(), recording.rows.len(), Some(job.segment.start));
         self.write(&job.time_path(), &seconds)?;
+        if let Some(round_trips) = &recording.round_trips {
+            let is_own = *round_trips != recording.seconds;
+            let times = if is_own { "the tracker's own" } else { "round trips" };
+            let text = serde_json::json!({ "times": times, "round_trip_seconds": round_trips });
+            self.write(&job.external_path(), &format!("{text}\n"))?;
+        }
         self.write(&Record::path(&job.result_path()), &record.text())?;
         self.write(&job.result_path(), &rows)?;
         self.forget_failure(job)

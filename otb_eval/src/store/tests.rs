@@ -40,6 +40,7 @@ fn results_stand_where_the_layout_says_with_every_digit() {
     let recording = Recording {
         rows: vec![Rect::new(1.0, 2.5, 3.0, 4.0), Rect::new(1.0 / 3.0, -7.0, 10.25, 16.0)],
         seconds: vec![0.25, 0.001_234_567_89],
+        round_trips: Some(vec![0.5, 0.25]),
     };
     store.keep_failure(&job(), "no luck").unwrap();
     let failure = folder.path().join("ope/infopart/seed_2/Crossing.failed.json");
@@ -49,6 +50,9 @@ fn results_stand_where_the_layout_says_with_every_digit() {
     let read = |name: &str| fs::read_to_string(folder.path().join("ope/infopart/seed_2").join(name)).unwrap();
     assert_eq!(read("Crossing.txt"), "1,2.5,3,4\n0.3333333333333333,-7,10.25,16\n");
     assert_eq!(read("Crossing_time.txt"), "0.25000000\n0.00123457\n");
+    let external: serde_json::Value = serde_json::from_str(&read("Crossing.external.json")).unwrap();
+    let expected = serde_json::json!({ "times": "the tracker's own", "round_trip_seconds": [0.5, 0.25] });
+    assert_eq!(external, expected);
     let record: Record = serde_json::from_str(&read("Crossing.result.json")).unwrap();
     assert_eq!((record.first_row, record.rows), (Some(1), 2));
     assert!(store.kept(&job()) == Kept::Whole && !failure.exists());
@@ -63,6 +67,7 @@ fn what_is_not_the_result_that_was_written_is_damaged() {
     let recording = Recording {
         rows: vec![Rect::new(1.0, 2.5, 3.0, 4.0), Rect::new(2.0, 2.5, 3.0, 45.0)],
         seconds: vec![0.25, 0.5],
+        round_trips: None,
     };
     let damage = || match store.kept(&job()) {
         Kept::Damaged(damage) => damage,

@@ -7,13 +7,12 @@
 //!    ground); equally far, the one seen more clearly. While their boxes overlap this stays so,
 //! 4. the target behind counts nothing where the one in front is, and its model is not updated.
 
-use std::sync::Arc;
-
 use crate::{
     background::BackgroundModel,
     features::colour_histogram::HistogramIntegrals,
     frame::FrameView,
     geometry::Rect,
+    parallel::Threads,
     tracker::{
         TrackError,
         estimate::{BoxWarning, Estimate, StageTime, WeightedBox},
@@ -35,7 +34,7 @@ const LEVEL: f64 = 0.02;
 /// Colour-histogram particle filters of several targets in one video.
 pub struct ColourFlock {
     parameters: CheckedColourParameters,
-    pool: Option<Arc<rayon::ThreadPool>>,
+    threads: Threads,
     frame_size: (usize, usize),
     background: Option<BackgroundModel>,
     integrals: HistogramIntegrals,
@@ -46,11 +45,11 @@ pub struct ColourFlock {
 }
 
 impl ColourFlock {
-    /// A flock that works in the thread pool it is called from (rayon's global one unless that is changed).
+    /// A flock that works in the thread pool it is called from, or without the feature `threads` on the calling thread.
     pub fn new(parameters: CheckedColourParameters) -> Self {
         Self {
             parameters,
-            pool: None,
+            threads: Threads::default(),
             frame_size: (0, 0),
             background: None,
             integrals: HistogramIntegrals::default(),
@@ -61,8 +60,14 @@ impl ColourFlock {
     }
 
     /// A flock that works in `pool`.
-    pub fn with_pool(parameters: CheckedColourParameters, pool: Arc<rayon::ThreadPool>) -> Self {
-        Self { pool: Some(pool), ..Self::new(parameters) }
+    #[cfg(feature = "threads")]
+    pub fn with_pool(parameters: CheckedColourParameters, pool: std::sync::Arc<rayon::ThreadPool>) -> Self {
+        Self::with_threads(parameters, Threads::Pool(pool))
+    }
+
+    /// A flock that works where `threads` says.
+    pub fn with_threads(parameters: CheckedColourParameters, threads: Threads) -> Self {
+        Self { threads, ..Self::new(parameters) }
     }
 
     /// The parameters it runs with.
@@ -128,10 +133,7 @@ impl ColourFlock {
     }
 
     fn in_pool<T: Send>(&mut self, work: impl FnOnce(&mut Self) -> T + Send) -> T {
-        match self.pool.clone() {
-            Some(pool) => pool.install(|| work(self)),
-            None => work(self),
-        }
+        self.threads.clone().run(|| work(self))
     }
 
     fn start(&mut self, frame: FrameView<'_>, boxes_in_frame: &[Rect]) {

@@ -17,11 +17,10 @@ mod target;
 #[cfg(test)]
 mod tests;
 
-use std::sync::Arc;
-
 use crate::{
     frame::{FrameStamp, FrameView},
     geometry::Rect,
+    parallel::Threads,
 };
 
 use super::{
@@ -38,14 +37,20 @@ pub struct ColourTracker {
 }
 
 impl ColourTracker {
-    /// A tracker that works in the thread pool it is called from (rayon's global one unless that is changed).
+    /// A tracker that works in the thread pool it is called from, or without the feature `threads` on the calling thread.
     pub fn new(parameters: CheckedColourParameters) -> Self {
         Self { flock: ColourFlock::new(parameters) }
     }
 
     /// A tracker that works in `pool`.
-    pub fn with_pool(parameters: CheckedColourParameters, pool: Arc<rayon::ThreadPool>) -> Self {
-        Self { flock: ColourFlock::with_pool(parameters, pool) }
+    #[cfg(feature = "threads")]
+    pub fn with_pool(parameters: CheckedColourParameters, pool: std::sync::Arc<rayon::ThreadPool>) -> Self {
+        Self::with_threads(parameters, Threads::Pool(pool))
+    }
+
+    /// A tracker that works where `threads` says.
+    pub fn with_threads(parameters: CheckedColourParameters, threads: Threads) -> Self {
+        Self { flock: ColourFlock::with_threads(parameters, threads) }
     }
 }
 

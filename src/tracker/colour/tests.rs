@@ -158,12 +158,13 @@ fn targets_of_other_colours_do_not_hide_each_other() {
     assert_eq!(flock.hidden_pairs(), []);
 }
 
+#[cfg(feature = "threads")]
 #[test]
 fn threads_change_nothing_and_bad_calls_are_typed_errors() {
     let run = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         let parameters = ColourParameters { foreground: true, foreground_after: 3, ..Default::default() };
-        let mut tracker = ColourTracker::with_pool(parameters.check().unwrap(), Arc::new(pool));
+        let mut tracker = ColourTracker::with_pool(parameters.check().unwrap(), std::sync::Arc::new(pool));
         tracker.init(scene(&[walk(0)], 1.0).view(), at(walk(0))).unwrap();
         (1..8).map(|i| tracker.update(scene(&[walk(i)], 1.0).view()).unwrap()).collect::<Vec<_>>()
     };

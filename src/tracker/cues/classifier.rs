@@ -2,12 +2,12 @@
 //! Algorithms 4 and 5.
 
 use rand::Rng;
-use rayon::prelude::*;
 
 use crate::{
     boosting::{BoostingOptions, GentleAdaBoost, Label, SampleMemory, StrongClassifier, Stump},
     features::{haar::HaarFeature, region::RegionIntegrals},
     geometry::Rect,
+    parallel::{ChunksMut, for_each},
 };
 
 use super::{Cue, Hypothesis, Parameters};
@@ -15,6 +15,7 @@ use crate::tracker::sampling::Sampler;
 
 /// The classifier, what it is trained on, and its weight.
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Classifier {
     /// alpha.
     weight: f64,
@@ -85,14 +86,13 @@ impl Classifier {
         self.sampler.draw(part, &field, *counts, rng, |part, label| boxes.push((*part, label)));
         self.sampler.draw_others(part, others, rng, |other| boxes.push((*other, Label::Background)));
         samples.resize(boxes.len() * pool.len(), 0.0);
-        samples.par_chunks_exact_mut(pool.len()).zip(boxes.par_iter()).with_max_len(1).for_each(
-            |(sample, (part, _))| {
-                let hypothesis = integrals.to_region(*part);
-                for (value, feature) in sample.iter_mut().zip(pool.iter()) {
-                    *value = feature.evaluate(integrals, &hypothesis);
-                }
-            },
-        );
+        let of_boxes = (ChunksMut(samples, pool.len()), boxes.as_slice());
+        for_each(of_boxes, 1, |_, (sample, (part, _))| {
+            let hypothesis = integrals.to_region(*part);
+            for (value, feature) in sample.iter_mut().zip(pool.iter()) {
+                *value = feature.evaluate(integrals, &hypothesis);
+            }
+        });
         for (sample, (_, label)) in samples.chunks_exact(pool.len()).zip(boxes.iter()) {
             memory.add(sample, *label);
         }

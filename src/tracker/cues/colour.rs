@@ -5,6 +5,7 @@ use crate::geometry::Rect;
 use super::{Cue, Hypothesis, Parameters, WindowView};
 
 /// The weight of the contrast; what it is read from belongs to the view.
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Colour {
     weight: f64,
 }

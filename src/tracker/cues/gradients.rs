@@ -6,6 +6,7 @@ use super::{Cue, Hypothesis, Parameters};
 
 /// The template and its weight.
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Gradients {
     /// HOG1.
     template: Hog,

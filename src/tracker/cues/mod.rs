@@ -8,7 +8,6 @@ mod place;
 mod size;
 
 use rand::Rng;
-use rayon::prelude::*;
 
 use crate::{
     features::{
@@ -19,6 +18,7 @@ use crate::{
     },
     frame::FrameView,
     geometry::Rect,
+    parallel::for_each,
 };
 
 use super::{evidence_map::EvidenceMap, parameters::Parameters, window_view::WindowView};
@@ -74,6 +74,7 @@ pub(super) struct Fit {
 }
 
 /// Every cue in use.
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Cues {
     classifier: Classifier,
     gradients: Gradients,
@@ -82,6 +83,7 @@ pub(super) struct Cues {
 }
 
 /// The cues that look over a window around the target, what they share, and where they together answer.
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 struct Window {
     view: WindowView,
     cues: WindowCues,
@@ -89,6 +91,7 @@ struct Window {
 }
 
 /// The cues that look over a window.
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 struct WindowCues {
     place: Place,
     size: Size,
@@ -257,7 +260,8 @@ impl Learner<'_> {
     pub fn learn(&mut self, frame: &FrameView<'_>, full: Rect) {
         let Window { view, cues, .. } = &mut *self.0;
         view.learn(frame, full);
-        cues.each_mut().into_par_iter().with_max_len(1).for_each(|cue| cue.learn(view, full));
+        let view = &*view;
+        for_each(cues.each_mut().as_mut_slice(), 1, |_, cue| cue.learn(view, full));
     }
 }
 

@@ -28,6 +28,7 @@ const CREDIT_POWER: i32 = 6;
 const LEAST_CREDIT: f64 = 0.01;
 
 /// The filters and their weight.
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Place {
     members: Vec<Member>,
     /// beta.
@@ -35,6 +36,7 @@ pub(super) struct Place {
     lessons: usize,
 }
 
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 struct Member {
     filter: CorrelationFilter,
     /// Whether it learns the target's own cells only.

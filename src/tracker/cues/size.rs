@@ -8,6 +8,7 @@ use crate::{
 use super::{Cue, Hypothesis, Parameters, WindowView};
 
 /// The filter and its weight.
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Size {
     filter: ScaleFilter,
     weight: f64,

@@ -1,0 +1,96 @@
+"""Evaluations from Python: here, and on a Ray cluster that loses a worker."""
+
+import os
+import sys
+
+import pytest
+
+from conftest import scene
+from infopart.evaluate import EvaluationError, Run
+
+cv2 = pytest.importorskip("cv2")
+
+
+@pytest.fixture
+def bench(tmp_path):
+    """What a Run needs: data of three sequences, the program, and a tracker that is a command."""
+    program = os.environ.get("OTB_EVAL_PROGRAM")
+    if not program:
+        pytest.skip("set OTB_EVAL_PROGRAM to the built program `otb_eval`")
+    for name, count in (("Ann", 8), ("Bob", 7), ("Cid", 6)):
+        frames, boxes = scene(count)
+        folder = tmp_path / "data" / name
+        (folder / "img").mkdir(parents=True)
+        for number, frame in enumerate(frames, 1):
+            cv2.imwrite(str(folder / "img" / f"{number:04d}.png"), frame)
+        rows = "".join(f"{x + 1},{y + 1},{w},{h}\n" for x, y, w, h in boxes)
+        (folder / "groundtruth_rect.txt").write_text(rows)
+    # A program that ends the process that its evaluation was started by, once.
+    killer = tmp_path / "kills_once.sh"
+    killer.write_text(
+        'if [ -e "$1/armed" ] && mkdir "$1/once" 2>/dev/null; then\n'
+        "  parent_of() { set -- $(cat /proc/$1/stat); echo $4; }\n"
+        '  kill -9 "$(parent_of "$(parent_of $PPID)")"\n'
+        f'fi\nexec "{sys.executable}" -m infopart.trax --option region=whole\n'
+    )
+
+    def run(out, **others):
+        command = f"sh {killer} {tmp_path}"
+        return Run(tmp_path / "data", out=tmp_path / out, program=program, **{"external": {"mine": command}, **others})
+
+    return tmp_path, run
+
+
+def boxes_below(folder):
+    files = (path for path in folder.rglob("*.txt") if not path.name.endswith("_time.txt"))
+    return {str(path.relative_to(folder)): path.read_bytes() for path in files}
+
+
+def test_here_and_what_is_wrong_is_said(bench):
+    folder, run = bench
+    here = run("here", trackers=["infopart"])
+    assert [job["done"] for job in here.plan()] == [False] * 6
+    here.here(jobs=2)
+    assert all(job["done"] for job in here.plan()) and len(boxes_below(folder / "here")) == 6
+    scores = here.score("pysot")
+    assert "mine" in str(scores)
+    assert [(row["toolkit"], row["tracker"]) for row in scores.rows()] == [("pysot", "infopart"), ("pysot", "mine")]
+    assert all(row["auc"] > 0.5 and row["frames_per_second"] > 0 for row in scores.rows()), scores.rows()
+    with pytest.raises(EvaluationError, match="choose from"):
+        run("other", trackers=["nobody"]).here()
+    with pytest.raises(EvaluationError, match="no_such_program"):
+        Run(folder / "data", out=folder / "x", program="no_such_program").plan()
+
+
+def test_a_cluster_that_loses_a_worker_gives_the_bytes_of_one_machine(bench, capfd):
+    ray = pytest.importorskip("ray", reason="pip install ray")
+    folder, run = bench
+    here = run("here", trackers=["infopart"])
+    here.here()
+    (folder / "armed").touch()
+    ray.init(num_cpus=2, include_dashboard=False, log_to_driver=False, logging_level="ERROR")
+    try:
+        cluster = run("cluster", trackers=["infopart"])
+        cluster.on_ray(retries=3)
+        assert (folder / "once").exists(), "no worker was killed"
+        assert boxes_below(folder / "cluster") == boxes_below(folder / "here")
+        assert "6 of 6 jobs, 0 failed" in capfd.readouterr().err
+        assert all(job["done"] for job in cluster.plan())
+        broken = run("broken", external={"bad": "echo nonsense"}, trackers=["infopart"])
+        with pytest.raises(EvaluationError, match=r"3 of 6 jobs failed:\n.*tracker bad"):
+            broken.on_ray()
+        assert len(boxes_below(folder / "broken")) == 3
+        with pytest.raises(EvaluationError, match="something else"):
+            other = folder / "other.toml"
+            other.write_text("particles = 30\n")
+            run("third", external={}, config={"infopart": other}).here()
+            (folder / "third/ope/infopart/seed_1/Cid.txt").unlink()
+            run("third", external={}, trackers=["infopart"]).on_ray()
+    finally:
+        ray.shutdown()
+
+
+def test_no_cluster_is_said(bench):
+    pytest.importorskip("ray", reason="pip install ray")
+    with pytest.raises(EvaluationError, match="ray start --head"):
+        bench[1]("x").on_ray(address="auto")
