@@ -13,6 +13,8 @@ pub mod report;
 pub mod results;
 pub mod runner;
 pub mod scoring;
+pub mod statistics;
 pub mod store;
+pub mod tables;
 pub mod toolkits;
 mod words;

@@ -1,21 +1,21 @@
 //! `otb_eval score`: tables under one toolkit's rules, or under all six.
 
 use std::{
-    fmt::Write as _,
     io::Write as _,
     path::{Path, PathBuf},
 };
 
 use anyhow::Result;
-use clap::Args;
+use clap::{Args, ValueEnum, builder::TypedValueParser as _};
 use infopart::{
-    output::{Destination, OutputError, StandardOutput, TextTable},
+    output::{Destination, OutputError, StandardOutput},
     program::BadInput,
 };
 use otb_eval::{
     protocol::Protocol,
-    scoring::{Measure, ScoreProblem, Spread, Table, TrackerScores},
+    scoring::{Measure, ScoreProblem, Table},
     store::write_whole,
+    tables::{self, Digits, OverallOptions, ScoreTable, TableFormat},
     toolkits::{Toolkit, UnknownToolkit},
 };
 
@@ -29,6 +29,10 @@ pub const EXAMPLES: &str = "\
 Examples:
   otb_eval score --data otb people --results results
   otb_eval score --data OTB100.json --results published --toolkit matlab --json scores.json
+
+For a paper: LaTeX with every tracker tested against one, percentages; a spreadsheet of every sequence:
+  otb_eval score --data OTB100.json --results published --toolkit pysot --format latex --percent --against ATOM
+  otb_eval score --data OTB100.json --results published --format csv --table sequence > auc.csv
 
 Where the six toolkits differ, and why; and the rules of one:
   otb_eval score --data OTB100.json --results published --toolkit all
@@ -54,15 +58,51 @@ pub struct ScoreArgs {
     /// Which results: ope, tre or sre
     #[arg(long, value_name = "ope|tre|sre", default_value = "ope")]
     protocol: Protocol,
-    /// What the tables by sequence and by attribute show: auc, precision, success, normalised, normalised-area or overlap
+    /// What the tables by sequence and by attribute show: auc, precision, success, success-75, normalised,
+    /// normalised-area or overlap
     #[arg(long, value_name = "NAME", default_value = "auc")]
     measure: Measure,
+    /// The measures of the table over all sequences [default: those that the rules have]
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
+    measures: Option<Vec<Measure>>,
+    /// How tables are written: text, csv (every digit), markdown or latex (booktabs)
+    #[arg(long, value_name = "text|csv|markdown|latex", default_value = "text")]
+    format: TableFormat,
+    /// Which tables [default: all as text, else overall]
+    #[arg(long, value_enum, value_delimiter = ',')]
+    table: Option<Vec<TableKind>>,
+    /// Digits after the point [default: 4 as text, else 3; with --percent 2 and 1]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(0..=15).map(usize::from))]
+    digits: Option<usize>,
+    /// Show scores as percentages
+    #[arg(long)]
+    percent: bool,
+    /// Show the 95 % interval over sequences beside every score of the table over all sequences; csv always has it
+    #[arg(long)]
+    intervals: bool,
+    /// Test every tracker against this one, in --measure: the mean difference, its 95 % interval and the probability by
+    /// Wilcoxon's signed-rank test over sequences, also corrected by Holm's rule for the number of trackers
+    #[arg(long, value_name = "TRACKER")]
+    against: Option<String>,
     /// Write everything, curves too, as JSON
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
     /// State thresholds, inequalities and rules in force, and score nothing
     #[arg(long)]
     explain: bool,
+}
+
+/// A table that can be asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum TableKind {
+    /// Trackers over all sequences
+    Overall,
+    /// Trackers over all sequences in --measure alone, with intervals, and the test of --against
+    Certainty,
+    /// --measure by attribute
+    Attribute,
+    /// --measure by sequence
+    Sequence,
 }
 
 /// One toolkit or all six.
@@ -92,11 +132,17 @@ pub fn score(args: &ScoreArgs) -> Result<()> {
     for toolkit in toolkits {
         scored.push(args.scored.score(&dataset, &results, toolkit, args.protocol)?);
     }
+    if args.toolkit == Toolkits::Six && (args.format != TableFormat::Text || args.against.is_some()) {
+        return Err(BadInput(
+            "--toolkit all: --format and --against are of one toolkit's table; choose one".into(),
+        )
+        .into());
+    }
     match args.toolkit {
         Toolkits::One(_) => {
             let (table, unscored) = &scored[0];
             tell(unscored, &mut problems);
-            print(&text_of(table, args.measure))?;
+            print(&args.written(table)?)?;
         }
         Toolkits::Six => {
             tell_once(&scored, &mut problems);
@@ -149,83 +195,87 @@ pub fn print(text: &str) -> Result<()> {
     })
 }
 
-fn text_of(table: &Table, measure: Measure) -> String {
-    let mut text = format!(
-        "{} under the rules of {} ({}), {} sequences; `--explain` states them\n\n",
-        table.protocol.title(),
-        table.toolkit,
-        table.toolkit.title(),
-        table.sequences.len()
-    );
-    // Writing to a String cannot fail.
-    let _ = writeln!(text, "{}", overall(table));
-    if let Some(source) = table.attributes {
-        let by_attribute = by_attribute(table, measure);
-        let _ = writeln!(text, "{} by attribute, as {source} has them\n{by_attribute}", measure.title());
+impl ScoreArgs {
+    /// The tables asked for, in the format asked for.
+    fn written(&self, table: &Table) -> Result<String> {
+        let is_text = self.format == TableFormat::Text;
+        let wanted = self.table.clone().unwrap_or_else(|| {
+            if is_text { TableKind::value_variants().to_vec() } else { vec![TableKind::Overall] }
+        });
+        if self.format == TableFormat::Csv && wanted.len() > 1 {
+            return Err(BadInput(
+                "--format csv: give one table with --table, since each has its own columns".into(),
+            )
+            .into());
+        }
+        let digits = self.digits();
+        let mut parts = Vec::new();
+        for (place, kind) in wanted.iter().enumerate() {
+            for one in self.tables_of(*kind, table)? {
+                let heading = match (is_text, place) {
+                    (true, 0) => format!(
+                        "{} under the rules of {} ({}), {} sequences; `--explain` states them\n\n",
+                        table.protocol.title(),
+                        table.toolkit,
+                        table.toolkit.title(),
+                        table.sequences.len()
+                    ),
+                    (true, _) => format!("{}\n", one.title),
+                    _ => String::new(),
+                };
+                parts.push(heading + &one.written(self.format, digits));
+            }
+        }
+        if is_text {
+            parts.push("* best, + second; an interval holds the mean over sequences with 95 %\n".to_owned());
+        }
+        Ok(parts.join("\n"))
     }
-    let _ = write!(text, "{} by sequence\n{}", measure.title(), by_sequence(table, measure));
-    text
-}
 
-/// Trackers by AUC, the best first; those without scores last.
-pub fn ranked(table: &Table) -> Vec<&TrackerScores> {
-    let mut trackers: Vec<&TrackerScores> = table.trackers.iter().collect();
-    let auc = |one: &TrackerScores| one.overall.map_or(f64::NEG_INFINITY, |scores| scores.auc.mean);
-    trackers.sort_by(|a, b| auc(b).total_cmp(&auc(a)));
-    trackers
-}
-
-/// A mean with its spread, if it has one.
-pub fn with_spread(value: Option<Spread>) -> String {
-    match value {
-        None => "-".into(),
-        Some(Spread { mean, deviation: None }) => format!("{mean:.4}"),
-        Some(Spread { mean, deviation: Some(deviation) }) => format!("{mean:.4} ± {deviation:.4}"),
-    }
-}
-
-fn overall(table: &Table) -> TextTable {
-    let headings = ["tracker", "seeds", "sequences"].into_iter();
-    let mut text = TextTable::new(headings.chain(Measure::ALL.map(Measure::title)).chain(["frames/s"]));
-    for one in ranked(table) {
-        let seeds = if one.seeds == [0] { "-".to_owned() } else { one.seeds.len().to_string() };
-        let mut cells = vec![one.tracker.clone(), seeds, one.scored.to_string()];
-        cells.extend(Measure::ALL.map(|measure| with_spread(one.overall.and_then(|s| measure.of(&s)))));
-        cells.push(one.frames_per_second.map_or("-".into(), |speed| format!("{speed:.1}")));
-        text.row(cells);
-    }
-    text
-}
-
-fn by_attribute(table: &Table, measure: Measure) -> TextTable {
-    let trackers = ranked(table);
-    let mut text = TextTable::new(
-        ["attribute", "sequences"].into_iter().chain(trackers.iter().map(|one| one.tracker.as_str())),
-    );
-    for attribute in otb_eval::catalogue::Attribute::ALL {
-        let of =
-            |one: &TrackerScores| one.attributes.iter().find(|scores| scores.attribute == attribute).cloned();
-        let Some(sequences) = trackers.iter().filter_map(|one| of(one)).map(|scores| scores.sequences).max()
-        else {
-            continue;
+    fn digits(&self) -> Digits {
+        let decimals = match (self.digits, self.format, self.percent) {
+            (Some(digits), ..) => digits,
+            (None, TableFormat::Text, false) => 4,
+            (None, TableFormat::Text, true) => 2,
+            (None, _, false) => 3,
+            (None, _, true) => 1,
         };
-        let cells = trackers.iter().map(|one| mean_of(of(one).and_then(|scores| measure.of(&scores.scores))));
-        text.row([attribute.code().to_owned(), sequences.to_string()].into_iter().chain(cells));
+        Digits { decimals, percent: self.percent }
     }
-    text
-}
 
-fn by_sequence(table: &Table, measure: Measure) -> TextTable {
-    let trackers = ranked(table);
-    let mut text =
-        TextTable::new(["sequence"].into_iter().chain(trackers.iter().map(|one| one.tracker.as_str())));
-    for (index, sequence) in table.sequences.iter().enumerate() {
-        let of = |one: &&TrackerScores| one.sequences[index].scores.and_then(|scores| measure.of(&scores));
-        text.row([sequence.clone()].into_iter().chain(trackers.iter().map(|one| mean_of(of(one)))));
+    fn tables_of(&self, kind: TableKind, table: &Table) -> Result<Vec<ScoreTable>> {
+        Ok(match kind {
+            TableKind::Overall => vec![tables::overall(table, &self.overall_options(table)?)],
+            TableKind::Certainty => {
+                let options = OverallOptions {
+                    measures: vec![self.measure],
+                    intervals: true,
+                    ..self.overall_options(table)?
+                };
+                let mut one = tables::overall(table, &options);
+                one.title = format!("{}, its 95 % interval over sequences", self.measure.title());
+                vec![one]
+            }
+            TableKind::Attribute => tables::by_attribute(table, self.measure).into_iter().collect(),
+            TableKind::Sequence => vec![tables::by_sequence(table, self.measure)],
+        })
     }
-    text
-}
 
-fn mean_of(value: Option<Spread>) -> String {
-    value.map_or("-".into(), |value| format!("{:.4}", value.mean))
+    fn overall_options(&self, table: &Table) -> Result<OverallOptions> {
+        let measures = self.measures.clone().unwrap_or_else(|| Measure::quoted(table.toolkit).to_vec());
+        let against = match &self.against {
+            None => None,
+            Some(name) => {
+                let place = table.trackers.iter().position(|one| one.tracker == *name).ok_or_else(|| {
+                    let there: Vec<&str> = table.trackers.iter().map(|one| one.tracker.as_str()).collect();
+                    BadInput(format!(
+                        "--against: there are no results of the tracker `{name}`, but of: {}",
+                        there.join(", ")
+                    ))
+                })?;
+                Some((place, self.measure))
+            }
+        };
+        Ok(OverallOptions { measures, intervals: self.intervals || self.format == TableFormat::Csv, against })
+    }
 }

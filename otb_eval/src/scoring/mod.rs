@@ -5,6 +5,7 @@
 //! 2. a tracker's curves are the unweighted mean of its sequences' curves, for each seed,
 //! 3. what is reported is the mean over seeds, and the spread over them.
 
+mod certainty;
 mod measure;
 mod problem;
 mod segments;
@@ -24,6 +25,7 @@ use crate::{
     toolkits::Rules,
 };
 
+pub use certainty::{Against, against, certainty, common_seeds, compare_scores};
 pub use measure::{Measure, UnknownMeasure};
 pub use problem::{ScoreProblem, Weight};
 pub use segments::{Segment, segments_of, start_of};

@@ -4,9 +4,9 @@ use serde::Serialize;
 
 use crate::{
     catalogue::{Attribute, AttributeSource},
-    compare::{deviation, mean},
     protocol::Protocol,
     results::TrackerResults,
+    statistics::{deviation, mean},
     toolkits::{Curves, Rules, Toolkit},
 };
 
@@ -83,6 +83,8 @@ pub struct Scores {
     pub precision_20: Spread,
     /// Share of frames with an overlap above 0.5.
     pub success_50: Spread,
+    /// Share of frames with an overlap above 0.75.
+    pub success_75: Spread,
     /// Normalised precision at 0.2, which toolkits print; `None` where the toolkit has none.
     pub normalised_precision_20: Option<Spread>,
     /// Area under the normalised precision curve: the mean of its 51 values.
@@ -121,6 +123,7 @@ impl Scores {
             auc: spread(Curves::auc),
             precision_20: spread(Curves::precision_at_20),
             success_50: spread(Curves::success_at_half),
+            success_75: spread(Curves::success_at_three_quarters),
             normalised_precision_20: optional(Curves::normalised_precision_at_02),
             normalised_precision_area: optional(Curves::normalised_precision_area),
             mean_overlap: spread(|curves| curves.mean_overlap),

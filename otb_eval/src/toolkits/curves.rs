@@ -10,6 +10,8 @@ use super::{
 
 /// Index of the overlap threshold 0.5.
 const HALF: usize = 10;
+/// Index of the overlap threshold 0.75.
+const THREE_QUARTERS: usize = 15;
 /// Index of the normalised threshold 0.2.
 const NORMALISED_02: usize = 20;
 
@@ -158,6 +160,11 @@ impl Curves {
         self.success[HALF]
     }
 
+    /// Success at an overlap of 0.75.
+    pub fn success_at_three_quarters(&self) -> f64 {
+        self.success[THREE_QUARTERS]
+    }
+
     /// Area under the normalised precision curve: the plain mean of its 51 values.
     pub fn normalised_precision_area(&self) -> Option<f64> {
         self.normalised.map(|curve| curve.iter().sum::<f64>() / NORMALISED_THRESHOLDS as f64)
@@ -187,7 +194,7 @@ impl Curves {
 fn mean_of<'a, const N: usize>(rules: &Rules, curves: impl Iterator<Item = &'a [f64; N]>) -> [f64; N] {
     let (mut total, mut count) = ([0.0; N], 0_usize);
     for curve in curves {
-        if rules.drops_zero_curves && curve.iter().sum::<f64>() <= f64::EPSILON {
+        if !rules.counts(curve) {
             continue;
         }
         total.iter_mut().zip(curve).for_each(|(total, value)| *total += value);

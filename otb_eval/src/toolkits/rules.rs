@@ -249,6 +249,11 @@ impl Rules {
         self.least_sequences_of_an_attribute
     }
 
+    /// Whether a sequence's curve counts in the mean over sequences: some toolkits leave curves of zeros out.
+    pub fn counts(&self, curve: &[f64]) -> bool {
+        !self.drops_zero_curves || curve.iter().sum::<f64>() > f64::EPSILON
+    }
+
     /// With frames of invalid truth left out of every share, as pytracking's `exclude_invalid_frames`.
     pub fn with_invalid_frames_excluded(self) -> Self {
         Self { denominator: Denominator::ValidFrames, ..self }
