@@ -20,11 +20,13 @@ use crate::{
 
 mod pacing;
 mod prediction;
+mod summary;
 
 use pacing::{Gate, sustained_frames_per_second};
 use prediction::Predictor;
 
 pub use pacing::Pace;
+pub use summary::{Summary, tracker_title};
 
 /// What the loop measured.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]

@@ -8,10 +8,10 @@ use infopart::{
     geometry::Region,
     output::{
         ContactSheet, Destination, Observer, PartialFile, Progress, RowFormat, RowOptions, RowWriter,
-        SheetSampler, StandardOutput, Tile, tracker_title,
+        SheetSampler, StandardOutput, Tile,
     },
     program::{self, BadInput},
-    run::{RunReport, run},
+    run::{RunReport, run, tracker_title},
     sequence::{self, Occluder, OpenOptions, Walker, WalkerOptions},
     tracker::{CheckedParameters, InfoPart, Parameters, Tracker},
 };

@@ -18,7 +18,6 @@ mod partial_file;
 mod pictures;
 mod progress;
 mod rows;
-mod summary;
 #[cfg(test)]
 pub(crate) mod testing;
 mod text_table;
@@ -32,7 +31,6 @@ pub use partial_file::PartialFile;
 pub use pictures::PictureFolder;
 pub use progress::Progress;
 pub use rows::{RowFormat, RowOptions, RowWriter};
-pub use summary::{Summary, tracker_title};
 pub use text_table::TextTable;
 pub use video::{VIDEO_EXTENSIONS, VideoWriter};
 

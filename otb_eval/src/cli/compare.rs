@@ -39,9 +39,9 @@ pub struct CompareArgs {
     second: String,
     #[command(flatten)]
     scored: ScoredArgs,
-    /// Whose rules
-    #[arg(long, value_name = "NAME", default_value = "plain")]
-    toolkit: Toolkit,
+    /// Whose rules, as `otb_eval score` has them [default: the data set's own; for OTB plain]
+    #[arg(long, value_name = "NAME")]
+    toolkit: Option<Toolkit>,
     /// Which results: ope, tre or sre
     #[arg(long, value_name = "ope|tre|sre", default_value = "ope")]
     protocol: Protocol,
@@ -69,7 +69,8 @@ pub fn run(args: &CompareArgs) -> Result<()> {
     let (dataset, mut problems) = args.scored.data.open()?;
     let names = [args.first.clone(), args.second.clone()];
     let results = args.scored.open_results(args.protocol)?.only(&names)?;
-    let (table, unscored) = args.scored.score(&dataset, &results, args.toolkit, args.protocol)?;
+    let toolkit = args.toolkit.unwrap_or_else(|| Toolkit::of(dataset.benchmark()));
+    let (table, unscored) = args.scored.score(&dataset, &results, toolkit, args.protocol)?;
     tell(&unscored, &mut problems);
     let outcome = outcome(args, &table)?;
     print(&text(&outcome))?;
@@ -93,7 +94,7 @@ fn outcome(args: &CompareArgs, table: &Table) -> Result<Outcome> {
         first: args.first.clone(),
         second: args.second.clone(),
         protocol: args.protocol,
-        toolkit: args.toolkit,
+        toolkit: table.toolkit,
         auc: of(Measure::Auc)?,
         precision: of(Measure::Precision)?,
         time_ratio: time_ratio(first, second),

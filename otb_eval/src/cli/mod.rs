@@ -27,6 +27,7 @@ mod report;
 mod run;
 mod score;
 mod scored;
+mod submit;
 
 const EXAMPLES: &str = "\
 Examples, in the order of an evaluation (otb and people are folders of OTB sequences):
@@ -36,6 +37,9 @@ Examples, in the order of an evaluation (otb and people are folders of OTB seque
   otb_eval compare infopart whole-body --data otb people --results results
   otb_eval plot --data otb people --results results --out plots
   otb_eval report --data otb people --results results --out report.html
+
+Other data sets are recognised by what is in their folders, and scored by their own rules:
+  otb_eval score --data LaSOT --results results
 
 Results of other trackers, RESULTS/TRACKER/SEQ.txt, against the boxes of OTB100.json, as six toolkits would score them:
   otb_eval score --data OTB100.json --results published --toolkit all
@@ -48,7 +52,7 @@ Exit codes:
   2    bad input: a flag, a file, a sequence or a result; what could be done is done
   130  interrupted with Ctrl-C";
 
-/// Runs trackers over TB-100, scores them as every toolkit would, plots, compares and reports.
+/// Runs trackers over TB-100 and other data sets, scores them as every toolkit would, plots, compares and reports.
 #[derive(Debug, Parser)]
 #[command(name = "otb_eval", version, max_term_width = 120, after_help = EXAMPLES)]
 struct Cli {
@@ -76,6 +80,9 @@ enum Command {
     /// Turn results from one toolkit's layout into another's
     #[command(after_help = convert::EXAMPLES)]
     Convert(convert::ConvertArgs),
+    /// Make the archive that the server of GOT-10k or TrackingNet takes
+    #[command(after_help = submit::EXAMPLES)]
+    Submit(submit::SubmitArgs),
     /// Draw success and precision plots
     #[command(after_help = plot::EXAMPLES)]
     Plot(Box<plot::PlotArgs>),
@@ -93,6 +100,7 @@ pub fn main() -> ExitCode {
         Command::Score(args) => score::score(&args),
         Command::Compare(args) => compare::run(&args),
         Command::Convert(args) => convert::run(&args),
+        Command::Submit(args) => submit::submit(&args),
         Command::Plot(args) => plot::plot(&args),
         Command::Report(args) => report::report(&args),
     };

@@ -6,8 +6,8 @@ use anyhow::{Context, Result};
 use clap::{Args, ValueEnum};
 use infopart::program::BadInput;
 use otb_eval::{
-    figures::{NamedPlot, plots},
-    plots::{Appearance, curves_csv},
+    figures::{NamedPlot, long_term_plot, plots},
+    plots::{Appearance, curves_csv, points_csv},
     protocol::Protocol,
     toolkits::Toolkit,
 };
@@ -26,7 +26,9 @@ A figure for one column of a paper: letters of 8 points, no title, the five best
 Written into DIR, for every protocol of which there are results, and for every attribute that some sequence has:
   success_ope.svg, .png, .csv       and precision_ope, normalised_precision_ope
   success_ope_OCC.svg, .png, .csv   and so on
-Legends rank trackers by AUC, by precision at 20 pixels, and by normalised precision at 0.2.";
+  long_term_ope                     precision and recall over confidence thresholds, with --long-term, or unasked where the
+                                    data has frames without a target; a tracker that tells no confidence is a short dash
+Legends rank trackers by AUC, by precision at 20 pixels, by normalised precision at 0.2, and by F.";
 
 /// Larger letters leave no room for curves.
 const LARGEST_TEXT: f64 = 3.0;
@@ -38,9 +40,9 @@ pub struct PlotArgs {
     /// Where the plots go
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-    /// Whose rules
-    #[arg(long, value_name = "NAME", default_value = "plain")]
-    toolkit: Toolkit,
+    /// Whose rules, as `otb_eval score` has them [default: the data set's own; for OTB plain]
+    #[arg(long, value_name = "NAME")]
+    toolkit: Option<Toolkit>,
     /// Which results: ope, tre or sre [default: all there are]
     #[arg(long, value_name = "ope|tre|sre")]
     protocol: Option<Protocol>,
@@ -135,6 +137,9 @@ impl PlotArgs {
                 PlotFormat::Svg => plot.svg_as(appearance).with_context(context)?.into_bytes(),
                 PlotFormat::Png => plot.png(appearance).with_context(context)?,
                 PlotFormat::Pdf => plot.pdf(appearance).with_context(context)?,
+                PlotFormat::Csv if plot.curves.windows(2).any(|pair| pair[0].x != pair[1].x) => {
+                    points_csv(&plot.curves).into_bytes()
+                }
                 PlotFormat::Csv => curves_csv(&plot.curves).with_context(context)?.into_bytes(),
             };
             write(&self.out.join(format!("{name}.{}", format.extension())), &bytes)?;
@@ -147,7 +152,8 @@ pub fn plot(args: &PlotArgs) -> Result<()> {
     let appearance = args.appearance()?;
     let (dataset, mut problems) = args.scored.data.open()?;
     let mut written = 0;
-    for (_, table) in args.scored.tables(&dataset, args.protocol, args.toolkit, &mut problems)? {
+    let toolkit = args.toolkit.unwrap_or_else(|| Toolkit::of(dataset.benchmark()));
+    for (results, table) in args.scored.tables(&dataset, args.protocol, toolkit, &mut problems)? {
         if let Some(name) = &args.highlight
             && !table.trackers.iter().any(|one| one.tracker == *name)
         {
@@ -157,8 +163,14 @@ pub fn plot(args: &PlotArgs) -> Result<()> {
                 format!("--highlight: there are no results of the tracker `{name}`, but of: {there}");
             return Err(BadInput(message).into());
         }
-        for named in plots(&table) {
-            args.write(named, &appearance)?;
+        let mut named = plots(&table);
+        if table.protocol == Protocol::Ope
+            && let Some(scores) = args.scored.long_term(&dataset, &results, toolkit, true)?
+        {
+            named.extend(long_term_plot(&scores));
+        }
+        for one in named {
+            args.write(one, &appearance)?;
             written += 1;
         }
     }

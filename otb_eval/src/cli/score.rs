@@ -13,7 +13,7 @@ use infopart::{
 };
 use otb_eval::{
     protocol::Protocol,
-    scoring::{Measure, ScoreProblem, Table},
+    scoring::{LongTermScores, Measure, ScoreProblem, Table},
     store::write_whole,
     tables::{self, Digits, OverallOptions, ScoreTable, TableFormat},
     toolkits::{Toolkit, UnknownToolkit},
@@ -52,9 +52,10 @@ Exit codes: 0 everything is scored, defects of others' results too, which are li
 pub struct ScoreArgs {
     #[command(flatten)]
     scored: ScoredArgs,
-    /// Whose rules: plain (no toolkit's special rules), matlab, jwlim, pysot, stvir, got10k, pytracking, or all six
-    #[arg(long, value_name = "NAME|all", default_value = "plain", value_parser = parse_toolkits)]
-    toolkit: Toolkits,
+    /// Whose rules: plain (no toolkit's special rules), matlab, jwlim, pysot, stvir, got10k, pytracking, or all six; or a data
+    /// set's: lasot, uav123, got10k-ao [default: the data set's own; for OTB plain]
+    #[arg(long, value_name = "NAME|all", value_parser = parse_toolkits)]
+    toolkit: Option<Toolkits>,
     /// Which results: ope, tre or sre
     #[arg(long, value_name = "ope|tre|sre", default_value = "ope")]
     protocol: Protocol,
@@ -103,6 +104,13 @@ enum TableKind {
     Attribute,
     /// --measure by sequence
     Sequence,
+    /// F, precision and recall where targets are absent for a while, with --long-term
+    LongTerm,
+}
+
+impl TableKind {
+    /// Those of scores over all frames.
+    const OF_EVERY_FRAME: [Self; 4] = [Self::Overall, Self::Certainty, Self::Attribute, Self::Sequence];
 }
 
 /// One toolkit or all six.
@@ -117,32 +125,36 @@ pub fn parse_toolkits(word: &str) -> Result<Toolkits, UnknownToolkit> {
 }
 
 pub fn score(args: &ScoreArgs) -> Result<()> {
-    let toolkits = match args.toolkit {
+    let toolkits_of = |chosen| match chosen {
         Toolkits::One(toolkit) => vec![toolkit],
         Toolkits::Six => Toolkit::SIX.to_vec(),
     };
     if args.explain {
+        let toolkits = toolkits_of(args.toolkit.unwrap_or(Toolkits::One(Toolkit::Plain)));
         let texts: Vec<String> =
             toolkits.iter().map(|toolkit| args.scored.rules(*toolkit).explain()).collect();
         return print(&texts.join("\n"));
     }
     let results = args.scored.open_results(args.protocol)?;
     let (dataset, mut problems) = args.scored.data.open()?;
+    let chosen = args.toolkit.unwrap_or_else(|| Toolkits::One(Toolkit::of(dataset.benchmark())));
     let mut scored = Vec::new();
-    for toolkit in toolkits {
+    for toolkit in toolkits_of(chosen) {
         scored.push(args.scored.score(&dataset, &results, toolkit, args.protocol)?);
     }
-    if args.toolkit == Toolkits::Six && (args.format != TableFormat::Text || args.against.is_some()) {
+    if chosen == Toolkits::Six && (args.format != TableFormat::Text || args.against.is_some()) {
         return Err(BadInput(
             "--toolkit all: --format and --against are of one toolkit's table; choose one".into(),
         )
         .into());
     }
-    match args.toolkit {
-        Toolkits::One(_) => {
+    let mut long_term = None;
+    match chosen {
+        Toolkits::One(toolkit) => {
             let (table, unscored) = &scored[0];
             tell(unscored, &mut problems);
-            print(&args.written(table)?)?;
+            long_term = args.scored.long_term(&dataset, &results, toolkit, false)?;
+            print(&args.written(table, long_term.as_deref())?)?;
         }
         Toolkits::Six => {
             tell_once(&scored, &mut problems);
@@ -150,7 +162,7 @@ pub fn score(args: &ScoreArgs) -> Result<()> {
         }
     }
     if let Some(path) = &args.json {
-        write_json(path, &scored)?;
+        write_json(path, &scored, long_term.as_deref())?;
     }
     problems.into_strict_result(args.scored.strict)
 }
@@ -163,7 +175,11 @@ fn tell_once(scored: &[(Table, Vec<ScoreProblem>)], problems: &mut Problems) {
     }
 }
 
-fn write_json(path: &Path, scored: &[(Table, Vec<ScoreProblem>)]) -> Result<()> {
+fn write_json(
+    path: &Path,
+    scored: &[(Table, Vec<ScoreProblem>)],
+    long_term: Option<&[LongTermScores]>,
+) -> Result<()> {
     let tables: Vec<serde_json::Value> = scored
         .iter()
         .map(|(table, problems)| {
@@ -172,7 +188,11 @@ fn write_json(path: &Path, scored: &[(Table, Vec<ScoreProblem>)]) -> Result<()> 
         })
         .collect::<Result<_, serde_json::Error>>()?;
     let program = format!("otb_eval {}", infopart::VERSION);
-    let text = serde_json::to_string_pretty(&serde_json::json!({ "program": program, "tables": tables }))?;
+    let mut all = serde_json::json!({ "program": program, "tables": tables });
+    if let Some(scores) = long_term {
+        all["long_term"] = serde_json::to_value(scores)?;
+    }
+    let text = serde_json::to_string_pretty(&all)?;
     write(path, format!("{text}\n").as_bytes())
 }
 
@@ -197,10 +217,13 @@ pub fn print(text: &str) -> Result<()> {
 
 impl ScoreArgs {
     /// The tables asked for, in the format asked for.
-    fn written(&self, table: &Table) -> Result<String> {
+    fn written(&self, table: &Table, long_term: Option<&[LongTermScores]>) -> Result<String> {
         let is_text = self.format == TableFormat::Text;
-        let wanted = self.table.clone().unwrap_or_else(|| {
-            if is_text { TableKind::value_variants().to_vec() } else { vec![TableKind::Overall] }
+        let wanted = self.table.clone().unwrap_or_else(|| match (is_text, long_term) {
+            (true, Some(_)) => TableKind::value_variants().to_vec(),
+            (true, None) => TableKind::OF_EVERY_FRAME.to_vec(),
+            (false, Some(_)) => vec![TableKind::LongTerm],
+            (false, None) => vec![TableKind::Overall],
         });
         if self.format == TableFormat::Csv && wanted.len() > 1 {
             return Err(BadInput(
@@ -211,7 +234,7 @@ impl ScoreArgs {
         let digits = self.digits();
         let mut parts = Vec::new();
         for (place, kind) in wanted.iter().enumerate() {
-            for one in self.tables_of(*kind, table)? {
+            for one in self.tables_of(*kind, table, long_term)? {
                 let heading = match (is_text, place) {
                     (true, 0) => format!(
                         "{} under the rules of {} ({}), {} sequences; `--explain` states them\n\n",
@@ -243,7 +266,12 @@ impl ScoreArgs {
         Digits { decimals, percent: self.percent }
     }
 
-    fn tables_of(&self, kind: TableKind, table: &Table) -> Result<Vec<ScoreTable>> {
+    fn tables_of(
+        &self,
+        kind: TableKind,
+        table: &Table,
+        long_term: Option<&[LongTermScores]>,
+    ) -> Result<Vec<ScoreTable>> {
         Ok(match kind {
             TableKind::Overall => vec![tables::overall(table, &self.overall_options(table)?)],
             TableKind::Certainty => {
@@ -258,6 +286,14 @@ impl ScoreArgs {
             }
             TableKind::Attribute => tables::by_attribute(table, self.measure).into_iter().collect(),
             TableKind::Sequence => vec![tables::by_sequence(table, self.measure)],
+            TableKind::LongTerm => {
+                let how = "--table long-term: add --long-term";
+                let scores = long_term.ok_or_else(|| BadInput(how.into()))?;
+                let all = [tables::long_term(scores), tables::long_term_by_sequence(scores)];
+                // A file of comma-separated values holds one table.
+                let count = if self.format == TableFormat::Csv { 1 } else { 2 };
+                all.into_iter().take(count).collect()
+            }
         })
     }
 

@@ -13,7 +13,7 @@ mod tests;
 
 use thiserror::Error;
 
-pub use csv::curves_csv;
+pub use csv::{curves_csv, points_csv};
 pub use layout::Area;
 pub(crate) use render::escape;
 pub use style::Style;
@@ -159,6 +159,18 @@ pub fn normalised_precision_plot(title: impl Into<String>, curves: Vec<Curve>) -
         y_label: "Normalised precision".into(),
         x_max: 0.5,
         mark: Some(0.2),
+        curves,
+    }
+}
+
+/// A plot of precision over recall, over the thresholds of a tracker's confidence.
+pub fn precision_recall_plot(title: impl Into<String>, curves: Vec<Curve>) -> Plot {
+    Plot {
+        title: title.into(),
+        x_label: "Recall".into(),
+        y_label: "Precision".into(),
+        x_max: 1.0,
+        mark: None,
         curves,
     }
 }

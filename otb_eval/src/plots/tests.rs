@@ -224,6 +224,10 @@ fn csv_has_every_digit_and_quotes_what_needs_it() {
         curves_csv(&curves).unwrap(),
         "threshold,KCF,\"a \"\"b\"\", c\"\n0,1,0.5\n0.05,0.30000000000000004,0.3333333333333333\n"
     );
+    assert_eq!(
+        points_csv(&curves[1..]),
+        "tracker,x,y\n\"a \"\"b\"\", c\",0,0.5\n\"a \"\"b\"\", c\",0.05,0.3333333333333333\n"
+    );
     assert_eq!(curves_csv(&[]).unwrap(), "threshold\n");
     let other = Curve { x: vec![0.0, 0.1], ..curves[0].clone() };
     assert!(curves_csv(&[curves[0].clone(), other]).unwrap_err().to_string().contains("other thresholds"));

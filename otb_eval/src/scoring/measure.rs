@@ -55,6 +55,11 @@ impl Measure {
             Toolkit::Matlab | Toolkit::Jwlim | Toolkit::Got10k => {
                 &[Self::Auc, Self::Precision, Self::Success, Self::Overlap]
             }
+            Toolkit::AverageOverlap => &[Self::Overlap, Self::Success, Self::Success75],
+            Toolkit::Lasot => {
+                &[Self::Auc, Self::Precision, Self::NormalisedArea, Self::Normalised, Self::Success]
+            }
+            Toolkit::Uav => &[Self::Auc, Self::Precision, Self::Success],
             _ => &[
                 Self::Auc,
                 Self::Precision,

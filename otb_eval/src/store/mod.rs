@@ -85,12 +85,12 @@ impl Store {
         identity.claim(&folder, machine)
     }
 
-    /// Keeps a job's boxes, times and record, the boxes last, since they say that the job is done.
+    /// Keeps a job's boxes, times, confidences and record, the boxes last, since they say that the job is done.
     ///
     /// # Errors
     /// [`StoreError::Io`].
     pub fn keep(&self, job: &Job, recording: &Recording) -> Result<(), StoreError> {
-        let (mut rows, mut seconds) = (String::new(), String::new());
+        let (mut rows, mut seconds, mut confidences) = (String::new(), String::new(), String::new());
         for row in &recording.rows {
             // Writing to a String cannot fail.
             let _ = writeln!(rows, "{},{},{},{}", row.x, row.y, row.w, row.h);
@@ -98,8 +98,14 @@ impl Store {
         for second in &recording.seconds {
             let _ = writeln!(seconds, "{second:.8}");
         }
+        for confidence in &recording.confidences {
+            let _ = writeln!(confidences, "{confidence}");
+        }
         let record = Record::new(rows.as_bytes(), recording.rows.len(), Some(job.segment.start));
         self.write(&job.time_path(), &seconds)?;
+        if !confidences.is_empty() {
+            self.write(&job.confidence_path(), &confidences)?;
+        }
         self.write(&Record::path(&job.result_path()), &record.text())?;
         self.write(&job.result_path(), &rows)?;
         self.forget_failure(job)

@@ -3,7 +3,7 @@
 use super::{Cell, Column, Ranked, ScoreTable, Scored};
 use crate::{
     catalogue::Attribute,
-    scoring::{Measure, Spread, Table, TrackerScores, against, certainty},
+    scoring::{LongTermPoint, LongTermScores, Measure, Spread, Table, TrackerScores, against, certainty},
     statistics::Interval,
 };
 
@@ -110,6 +110,62 @@ pub fn by_sequence(table: &Table, measure: Measure) -> ScoreTable {
     let columns = [column("sequence", "sequence")].into_iter().chain(names(table, &order)).collect();
     let rows = table.sequences.iter().enumerate().map(row).collect();
     ScoreTable { title: format!("{} by sequence", measure.title()), columns, rows, ranked: Ranked::Rows }
+}
+
+/// Long-term scores, the best F first.
+pub fn long_term(scores: &[LongTermScores]) -> ScoreTable {
+    let mut order: Vec<&LongTermScores> = scores.iter().collect();
+    let f = |one: &LongTermScores| one.f.map_or(f64::NEG_INFINITY, |f| f.mean);
+    order.sort_by(|a, b| f(b).total_cmp(&f(a)));
+    let row = |one: &&LongTermScores| {
+        let part = |of: fn(&LongTermPoint) -> f64| {
+            Cell::Score(one.best.as_ref().map(|point| Scored {
+                value: of(point),
+                deviation: None,
+                interval: None,
+            }))
+        };
+        let threshold = one.best.filter(|_| one.has_confidence).map(|point| point.threshold);
+        vec![
+            Cell::Text(one.tracker.clone()),
+            Cell::Count(Some(one.sequences.len())),
+            Cell::Score(one.f.map(|spread| scored(spread, None))),
+            part(|point| point.precision),
+            part(|point| point.recall),
+            Cell::Text(threshold.map_or_else(|| "-".to_owned(), |threshold| format!("{threshold:.4}"))),
+        ]
+    };
+    let columns = vec![
+        column("tracker", "tracker"),
+        column("sequences", "sequences"),
+        column("F", "f"),
+        column("precision", "precision"),
+        column("recall", "recall"),
+        column("at confidence", "confidence"),
+    ];
+    let title = "Long term: the best F over confidence thresholds".to_owned();
+    ScoreTable { title, columns, rows: order.iter().map(row).collect(), ranked: Ranked::Columns }
+}
+
+/// The best F of each sequence.
+pub fn long_term_by_sequence(scores: &[LongTermScores]) -> ScoreTable {
+    let mut sequences: Vec<&str> = Vec::new();
+    for (name, _) in scores.iter().flat_map(|one| &one.sequences) {
+        if !sequences.contains(&name.as_str()) {
+            sequences.push(name);
+        }
+    }
+    let row = |sequence: &&str| {
+        let f = |one: &LongTermScores| {
+            let found = one.sequences.iter().find(|(name, _)| name == sequence);
+            Cell::Score(found.map(|(_, f)| Scored { value: *f, deviation: None, interval: None }))
+        };
+        [Cell::Text((*sequence).to_owned())].into_iter().chain(scores.iter().map(f)).collect()
+    };
+    let names = scores.iter().map(|one| column(&one.tracker, &one.tracker));
+    let columns = [column("sequence", "sequence")].into_iter().chain(names).collect();
+    let rows = sequences.iter().map(row).collect();
+    ScoreTable { title: "Long term: F by sequence".to_owned(), columns, rows, ranked: Ranked::Rows }
 }
 
 /// Places of the trackers, the best first; those without scores last.

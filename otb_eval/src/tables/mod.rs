@@ -13,7 +13,7 @@ use std::str::FromStr;
 use thiserror::Error;
 
 use crate::statistics::Interval;
-pub use build::{OverallOptions, by_attribute, by_sequence, overall};
+pub use build::{OverallOptions, by_attribute, by_sequence, long_term, long_term_by_sequence, overall};
 
 /// How a table is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

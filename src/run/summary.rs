@@ -4,10 +4,8 @@ use std::fmt::Write;
 
 use serde::Serialize;
 
-use crate::{
-    geometry::Region,
-    run::{Pace, RunReport},
-};
+use super::{Pace, RunReport};
+use crate::geometry::Region;
 
 /// What a run came to. Serialised, it is one flat JSON object but for `scores`, `warnings` and `stages`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
