@@ -96,7 +96,7 @@ addEventListener('load', async () => {
 
   click(every('#plots .tablist button')[1]);
   note('second tab', one('#plots .panel.on h3').textContent);
-  note('wider than the window', document.documentElement.scrollWidth - innerWidth);
+  note('wider than the window', document.documentElement.scrollWidth - document.documentElement.clientWidth);
   note('width', innerWidth);
   note('error', document.body.dataset.error);
   document.body.dataset.seen = lines.join('|');

@@ -206,7 +206,8 @@ impl ScoredArgs {
         toolkit: Toolkit,
         unasked: bool,
     ) -> Result<Option<Vec<LongTermScores>>> {
-        if !self.long_term && !(unasked && has_absence(dataset)) {
+        let is_wanted = self.long_term || (unasked && has_absence(dataset));
+        if !is_wanted {
             return Ok(None);
         }
         Ok(Some(long_term(dataset, results, &self.options(toolkit, Protocol::Ope)?)))

@@ -54,7 +54,7 @@ fn probability(p: f64) -> String {
 
 pub(super) fn csv(table: &ScoreTable) -> String {
     let has = |column: usize, part: fn(&Scored) -> bool| {
-        table.rows.iter().any(|row| scored_of(&row[column]).is_some_and(|scored| part(scored)))
+        table.rows.iter().any(|row| scored_of(&row[column]).is_some_and(&part))
     };
     let parts: Vec<(bool, bool)> = (0..table.columns.len())
         .map(|column| (has(column, |one| one.deviation.is_some()), has(column, |one| one.interval.is_some())))

@@ -166,15 +166,17 @@ fn no_name_is_an_option_or_a_protocol_unless_it_was_meant() {
 
 #[test]
 fn a_live_stream_gives_the_newest_frame_and_its_number() {
-    let script = frames_at(&["0", "1", "2", "3"]) + &"\n".repeat(1);
-    let mut video = opened(&script, ALL).unwrap().live();
-    // Long enough for all four to have come.
-    std::thread::sleep(std::time::Duration::from_millis(500));
-    let frame = video.next_frame().unwrap().unwrap();
-    assert_eq!((frame.number, frame.time.map(|time| time.as_secs())), (4, Some(3)));
+    let mut video = opened(&frames_at(&["0", "1", "2", "3"]), ALL).unwrap().live();
+    let mut numbers = Vec::new();
+    while let Some(frame) = video.next_frame().unwrap() {
+        assert_eq!(frame.time.map(|time| time.as_secs()), Some(frame.number as u64 - 1));
+        numbers.push(frame.number);
+    }
+    // How many are left out depends on time, their order and the last one do not.
+    assert!(numbers.windows(2).all(|pair| pair[0] < pair[1]) && numbers.ends_with(&[4]), "{numbers:?}");
     assert!(video.next_frame().unwrap().is_none());
-    assert!(video.next_frame().unwrap().is_none());
-    let mut broken = opened(&(frames_at(&["0"]) + "sleep 0.2; printf garbage"), ALL).unwrap().live();
-    assert_eq!(broken.next_frame().unwrap().unwrap().number, 1);
+    let mut broken = opened(&(frames_at(&["0"]) + "printf garbage"), ALL).unwrap().live();
+    assert_eq!(broken.next_frame().unwrap().unwrap().number, 1, "a frame is delivered before the error");
     assert!(broken.next_frame().unwrap_err().to_string().contains("broke off after frame 1"));
+    assert!(broken.next_frame().unwrap().is_none());
 }
