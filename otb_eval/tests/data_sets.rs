@@ -275,6 +275,17 @@ fn every_data_set_is_checked_run_and_scored_alike() {
 }
 
 #[test]
+fn frames_in_a_video_are_no_missing_images() {
+    let scene = Scene::empty();
+    scene.write("tld/01_david/gt.txt", "2,3,6,8\n2,3,6,8\n");
+    scene.write("tld/01_david/david.mpg", "");
+    let checked = scene.accepts("check tld");
+    assert!(checked.stdout.contains("its frames are in a video, david.mpg"), "{}", checked.stdout);
+    scene.write("results/ours/01_david.txt", "2,3,4,5\n2,3,4,5\n");
+    assert!(scene.accepts("score --data tld --results results").stdout.contains("0.9524"));
+}
+
+#[test]
 fn servers_get_whole_archives_or_none() {
     let scene = Scene::empty();
     for name in ["GOT-10k_Test_000001", "GOT-10k_Test_000002"] {

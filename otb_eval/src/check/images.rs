@@ -5,7 +5,9 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use infopart::sequence::{SequenceError, benchmark_sequences, decode_image, otb_images, probe_image};
+use infopart::sequence::{
+    FramePlace, SequenceError, benchmark_sequences, decode_image, otb_images, probe_image,
+};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -53,6 +55,12 @@ impl Images {
     ) -> ImageSummary {
         let omitted = frames.first_frame - 1;
         let rows = target.truth.len() + omitted;
+        if let Some(video) = video_of(frames) {
+            let text =
+                format!("its frames are in a video, {}, which is not looked through", file_name(&video));
+            findings.push(Finding::oddity(text));
+            return ImageSummary { count: 0, first: None, last: None, size: None };
+        }
         let is_benchmark = target.annotations.benchmark.is_some();
         let found = if is_benchmark { of_benchmark(frames, rows) } else { of_otb(frames, rows) };
         let (all, covered) = match found {
@@ -92,6 +100,15 @@ impl Images {
 
 /// All images, and those that rows belong to.
 type Listing = Result<(Vec<PathBuf>, Vec<PathBuf>), SequenceError>;
+
+/// The video that a sequence's frames are in, if they are in one.
+fn video_of(frames: &FrameFolder) -> Option<PathBuf> {
+    let found = benchmark_sequences(&frames.path).ok()?;
+    found.into_iter().find_map(|one| match one.frames {
+        FramePlace::Video(video) => Some(video),
+        FramePlace::Folder(_) => None,
+    })
+}
 
 fn of_otb(frames: &FrameFolder, rows: usize) -> Listing {
     otb_images(&frames.path, rows).map(|images| (images.all, images.covered))

@@ -137,7 +137,9 @@
       { label: 'Overlap', largest: 1, digits: 2, values: data.overlaps.map(bytes) },
       { label: 'Centre error (pixels)', largest: data.largest, digits: 1, values: data.errors.map(bytes) },
     ];
-    const width = 900, height = 190, left = 46, right = 890, top = 22, bottom = 164;
+    // As wide as the place, so that letters keep their size on a phone.
+    const narrow = place.clientWidth < 600;
+    const width = narrow ? 400 : 900, height = 190, left = 46, right = width - 10, top = 22, bottom = 164;
     const last = Math.max(1, data.frames - 1);
     const across = (i) => left + i * data.every / last * (right - left);
     const svgs = kinds.map((kind) => {
@@ -337,6 +339,7 @@
   all('.tabs').forEach(setUpTabs);
   setUpFilter();
   setUpLinks();
+  addEventListener('beforeprint', () => all('.timeline').forEach(setUpTimeline));
   all('table').forEach(setUpTable);
   all('.plot').forEach((plot, i) => setUpPlot(plot, numbers.plots[i]));
   document.body.dataset.ready = 'yes';
