@@ -63,7 +63,8 @@ fn text_named_jpg_is_no_image() {
     let (good, message) = first_error(folder.path());
     assert_eq!(good, 1);
     assert!(
-        message.contains("2.jpg: cannot be decoded: the file is no JPEG, PNG or BMP image; replace"),
+        message
+            .contains("2.jpg: cannot be decoded: the file is no JPEG, PNG, BMP, TIFF or WebP image; replace"),
         "{message}"
     );
 }

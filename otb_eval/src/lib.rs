@@ -1,4 +1,4 @@
-//! Runs trackers over the Object Tracking Benchmark (TB-100) and scores them exactly as each toolkit in use would.
+//! Runs trackers over the Object Tracking Benchmark (TB-100) and other data sets, and scores them exactly as each toolkit in use would.
 #![deny(missing_docs)]
 
 pub mod catalogue;
@@ -14,6 +14,9 @@ pub mod report;
 pub mod results;
 pub mod runner;
 pub mod scoring;
+pub mod statistics;
 pub mod store;
+pub mod submission;
+pub mod tables;
 pub mod toolkits;
 mod words;

@@ -23,7 +23,8 @@ impl Scene {
     fn reproducible_so_far(&self, folder: &str) -> Vec<String> {
         let mut files = std::collections::BTreeMap::new();
         bench_scene::collect(&self.path(folder), &self.path(folder), &mut files);
-        files.into_keys().filter(|name| !name.ends_with("_time.txt")).collect()
+        let is_beside = |name: &String| name.ends_with("_time.txt") || name.ends_with("_confidence.txt");
+        files.into_keys().filter(|name| !is_beside(name)).collect()
     }
 }
 
@@ -32,11 +33,11 @@ fn a_killed_run_goes_on_to_the_bytes_of_an_undisturbed_one() {
     let scene = Scene::with_walkers();
     scene.accepts(&format!("{RUN} --out whole"));
     let expected = scene.reproducible("whole");
-    let files = 2 * 3 * 3 + 1;
+    let files = 3 * 3 * 3 + 1;
     assert_eq!(
         expected.len(),
         files,
-        "result and record, three sequences, three seeds, run.json: {:?}",
+        "result, record and confidences, three sequences, three seeds, run.json: {:?}",
         expected.keys()
     );
     for least in [1, 4] {

@@ -17,9 +17,12 @@ fn every_tracker_is_in_every_part() {
     for place in 0..TRACKERS.len() {
         assert_eq!(count(&html, &format!("<g class=\"curve s{place}\"")), plots, "curves of {place}");
         assert_eq!(count(&html, &format!("<g class=\"row s{place}\"")), plots, "legends of {place}");
-        assert_eq!(count(&html, &format!("<tr class=\"s{place}\"")), 2, "overall rows of {place}");
-        assert_eq!(count(&html, &format!("<i class=\"s{place}\"")), 11, "bars of {place}");
-        assert_eq!(count(&html, &format!("<th class=\"s{place}\"")), 3, "columns of {place}");
+        assert_eq!(
+            count(&html, &format!("<tr class=\"s{place}\"")),
+            3,
+            "overall rows, and one of the map, of {place}"
+        );
+        assert_eq!(count(&html, &format!("<th class=\"s{place}\"")), 2, "columns of {place}");
         let frames = if place == 7 { 6 } else { 12 };
         assert_eq!(count(&html, &format!("<rect class=\"box s{place}\"")), frames, "boxes of {place}");
         assert_eq!(count(&html, &format!("value=\"{place}\"")), 1, "switch of {place}");
@@ -33,7 +36,8 @@ fn the_page_fetches_nothing() {
     for foreign in ["http://", "https://", "src=\"", "@import", "url(", "<link"] {
         assert!(!rest.contains(foreign), "{foreign} in the page");
     }
-    assert_eq!(count(&html, "href=\""), count(&html, "href=\"data:image/jpeg;base64,"));
+    let inner = count(&html, "href=\"data:image/jpeg;base64,") + count(&html, "href=\"#sequence-");
+    assert_eq!(count(&html, "href=\""), inner);
 }
 
 #[test]
@@ -80,16 +84,47 @@ fn overall_rows_are_ranked_and_the_best_stands_out() {
     let places: Vec<usize> =
         [9, 1, 0, 5].iter().map(|t| body.find(&format!("<tr class=\"s{t}\"")).unwrap()).collect();
     assert!(places.windows(2).all(|pair| pair[0] < pair[1]), "{places:?}");
-    assert!(body.contains("<td class=\"best\">0.700</td>"));
-    assert!(body.contains("<td>0.620 <small>± 0.004</small></td>"));
+    assert!(body.contains("<td class=\"best\">0.700 <small>[0.660, 0.750]</small></td>"));
+    assert!(body.contains("<td>0.620 <small>± 0.004 [0.580, 0.670]</small></td>"));
+    assert!(body.contains("<td class=\"second\">0.680 <small>[0.640, 0.730]</small></td>"));
+    let tested = "<td class=\"clear\">+0.080 <small>[+0.040, +0.120]</small></td><td>&lt; 0.001</td>";
+    assert!(body.contains(tested));
+}
+
+#[test]
+fn a_map_of_attributes_goes_from_the_least_to_the_most() {
+    let html = report().html().unwrap();
+    let map = &html[html.find("<table class=\"heat\"").unwrap()..];
+    let map = &map[..map.find("</table>").unwrap()];
+    assert_eq!((count(map, "<tr"), count(map, "--v:1.00")), (12, 1));
+    assert!(map.contains("--v:0.00") && map.contains("--v:0.5"));
+}
+
+#[test]
+fn what_scoring_met_stands_apart_from_failed_jobs_and_rows_lead_to_their_sequences() {
+    let html = report().html().unwrap();
+    let section = |id: &str| {
+        let from = &html[html.find(&format!("<section id=\"{id}\"")).unwrap()..];
+        from[..from.find("</section>").unwrap()].to_owned()
+    };
+    assert!(section("scoring").contains("Sequence3: the result has 5 rows &lt;and the truth 6&gt;"));
+    assert!(
+        !section("failures").contains("Sequence3: the result")
+            && section("failures").contains("TLD on Sequence4")
+    );
+    assert!(section("sequences").contains("<a href=\"#sequence-1\">Sequence1</a>"));
+    assert!(
+        section("time").contains("id=\"sequence-1\"") && !section("sequences").contains(">Sequence7</a>")
+    );
 }
 
 #[test]
 fn what_is_empty_is_left_out() {
     let html = Report { title: "Nothing".into(), ..Report::default() }.html().unwrap();
     assert_eq!((count(&html, "<section"), count(&html, "<table"), count(&html, "<img")), (0, 0, 0));
-    let without = Report { strips: vec![], ..report() }.html().unwrap();
-    assert!(!without.contains("data:image") && !without.contains("id=\"frames\""));
+    let without = Report { strips: vec![], timelines: vec![], ..report() }.html().unwrap();
+    assert!(!without.contains("data:image") && !without.contains("id=\"time\""));
+    assert!(!without.contains("href=\"#sequence-"), "no way to what is not shown");
 }
 
 #[test]

@@ -16,7 +16,7 @@ use infopart::{
 use rayon::ThreadPoolBuilder;
 use serde::Serialize;
 
-use super::values::{parse_count, parse_positive};
+use super::values::{parse_count, parse_positive, parse_threads};
 
 pub const EXAMPLES: &str = "\
 Examples:
@@ -116,7 +116,7 @@ struct ModelArgs {
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
     /// How many threads share the runs [default: one a core]
-    #[arg(long, value_name = "N", value_parser = parse_count)]
+    #[arg(long, value_name = "N", value_parser = parse_threads)]
     threads: Option<usize>,
     /// Write everything found as JSON
     #[arg(long, value_name = "FILE")]

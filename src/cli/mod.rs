@@ -1,6 +1,6 @@
 //! The command line: one file a subcommand, flags turned into checked options, errors told in one place.
 
-use std::process::ExitCode;
+use std::{path::Path, process::ExitCode};
 
 use clap::{Parser, Subcommand};
 use infopart::program;
@@ -17,6 +17,7 @@ mod outputs;
 mod parameters;
 mod several;
 mod track;
+mod track_args;
 mod trax;
 mod values;
 
@@ -49,7 +50,7 @@ enum Command {
     Demo(demo::DemoArgs),
     /// Track a target from its box in the first frame
     #[command(after_help = track::EXAMPLES)]
-    Track(Box<track::TrackArgs>),
+    Track(Box<track_args::TrackArgs>),
     /// Learn a static camera's background and show what moves: masks, blobs, a picture
     #[command(after_help = background::EXAMPLES)]
     Background(background::BackgroundArgs),
@@ -67,9 +68,28 @@ enum Command {
     Estimate(estimate::EstimateArgs),
 }
 
+/// Tells what clap says of a command line, and of a file whose name was taken for a flag.
+fn refused(error: &clap::Error) -> ExitCode {
+    // Nothing can be told where not even this can be written.
+    let _ = error.print();
+    if error.kind() == clap::error::ErrorKind::UnknownArgument {
+        for word in std::env::args_os().skip(1).filter(|word| Path::new(word).is_file()) {
+            let name = word.to_string_lossy();
+            if name.starts_with('-') {
+                eprintln!("  tip: `{name}` is a file here: give it as ./{name}");
+            }
+        }
+    }
+    ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(program::BAD_INPUT))
+}
+
 /// Runs the program on its command line.
 pub fn main() -> ExitCode {
-    let outcome = match Cli::parse().command {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => return refused(&error),
+    };
+    let outcome = match cli.command {
         Command::Track(args) => track::track(&args),
         Command::Demo(args) => demo::demo(&args),
         Command::Background(args) => background::background(&args),

@@ -16,7 +16,7 @@ use infopart::{
     run::RunError,
 };
 
-use super::track::TrackArgs;
+use super::track_args::TrackArgs;
 
 /// The observers of a run, and where its rows are if it stops.
 pub struct Outputs {

@@ -16,7 +16,7 @@ use infopart::{
 };
 use rayon::ThreadPool;
 
-use super::{first_box::FirstBox, track::TrackArgs};
+use super::{first_box::FirstBox, track_args::TrackArgs};
 
 /// What is told when it is over.
 pub struct SeveralReport {

@@ -1,14 +1,13 @@
 //! `infopart track`: from an input and a box to rows, pictures and a summary.
 
-use std::{num::NonZeroUsize, path::PathBuf, sync::Arc};
+use std::sync::Arc;
 
 use anyhow::{Context, Result};
-use clap::Args;
 use infopart::{
-    geometry::{Origin, Rect, Region},
+    geometry::{Rect, Region},
     program::{self, BadInput},
     run::{Pace, RunReport, Summary, run_at, tracker_title},
-    sequence::{self, OpenOptions, Sequence},
+    sequence::{self, OpenOptions, Sequence, SequenceError},
     tracker::{
         CheckedParameters, InfoPart, Tracker,
         colour::{CheckedColourParameters, ColourTracker},
@@ -20,11 +19,9 @@ use super::{
     auto_init,
     first_box::FirstBox,
     outputs::Outputs,
-    parameters::ParameterArgs,
     several::{SeveralReport, track_several},
-    values::{
-        Format, Init, TrackerName, parse_count, parse_init, parse_origin, parse_positive, parse_stride,
-    },
+    track_args::TrackArgs,
+    values::{Init, TrackerName},
 };
 
 pub const EXAMPLES: &str = "\
@@ -38,6 +35,11 @@ Examples:
   infopart track ships.avi --tracker colour --init 9,40,60,25 --init 200,52,48,20 --out ships.txt
   infopart track Crossing --stride 3             every third frame; the others are predicted
   infopart track Crossing --realtime 30          as with a camera of 30 frames per second
+  infopart track /dev/video0 --init 9,9,80,200   a camera (Linux); the newest frame each time
+  infopart track 0 --input-format avfoundation --init 9,9,80,200   a camera (macOS)
+  infopart track rtsp://host/stream --live --init 9,9,80,200       a network camera
+  cat walk.mkv | infopart track - --init 120,80,40,110             a video from standard input
+  infopart track anno/UAV123/person12_2.txt      a part of a folder of UAV123
 
 Rows: one a frame from the first tracked on, which holds the first box. A lost target has a row too: the best guess.
 
@@ -48,6 +50,10 @@ Pictures: the box is green while tracking, orange if uncertain, red if lost; thi
 the particles, dashed white the ground truth. An annotated video has one constant rate, that of the input's first \
 five frames (25 a second for images): an input of variable rate is seen faster or slower than it was. The true time \
 of each frame is in csv and jsonl rows.
+
+Streams: a video that breaks off, or has less than its container promises, ends with exit code 2 and the last good frame; \
+the rows up to there are kept. With --live frames that came while the tracker was busy have no row; csv and jsonl rows \
+have the numbers of those that do. A file whose name begins with a dash is ./-name.
 
 Skipped frames: with --stride and --realtime the frames that the tracker does not get have rows too. Their box goes on \
 at the velocity of the last two tracked ones known at that time, their status and confidence are those of the last, \
@@ -64,64 +70,6 @@ Exit codes:
   1    internal failure
   2    bad input: a flag, a file or a box
   130  interrupted with Ctrl-C";
-
-#[derive(Debug, Args)]
-pub struct TrackArgs {
-    /// An OTB folder (img/ and groundtruth_rect.txt), a folder or a quoted glob of images (jpg, png, bmp),
-    /// or a video (needs ffmpeg)
-    pub input: String,
-    /// What tracks
-    #[arg(long, value_name = "infopart|colour", default_value = "infopart")]
-    tracker: TrackerName,
-    /// The target's box in the first frame: left, top, width, height in pixels; with --tracker colour it may be
-    /// given several times, once a target; or auto, before a static camera: the first object that moves for 15 frames,
-    /// from then on [default: the ground truth's]
-    #[arg(long, value_name = "X,Y,W,H|auto", value_parser = parse_init, allow_hyphen_values = true)]
-    init: Vec<Init>,
-    /// Which target of an OTB folder that has several: the K of groundtruth_rect.K.txt; with --init auto the K-th object
-    #[arg(long, value_name = "K", value_parser = parse_count)]
-    target: Option<usize>,
-    /// The number of the first pixel, in --init, the ground truth and the rows [default: 1 for OTB folders, else 0]
-    #[arg(long, value_name = "0|1", value_parser = parse_origin)]
-    origin: Option<Origin>,
-    /// The first frame to track, counted from 1; the first box is that of this frame [default: 1]
-    #[arg(long, value_name = "N", value_parser = parse_count)]
-    start: Option<usize>,
-    /// The last frame to track, counted from 1 [default: the last there is]
-    #[arg(long, value_name = "M", value_parser = parse_count)]
-    end: Option<usize>,
-    /// Where the rows go, one a frame; they are in FILE.partial until they are all there [default: standard output]
-    #[arg(long, value_name = "FILE")]
-    pub out: Option<PathBuf>,
-    /// How rows are written [default: by the extension of --out, else otb]
-    #[arg(long)]
-    pub format: Option<Format>,
-    #[command(flatten)]
-    parameters: ParameterArgs,
-    /// Draw boxes and particles on every frame: pictures DIR/000001.jpg and so on, or a video (mp4, mkv, mov, avi;
-    /// needs ffmpeg)
-    #[arg(long, value_name = "DIR|FILE.mp4")]
-    pub annotate: Option<PathBuf>,
-    /// Track only every K-th frame from the first on, and predict the boxes between
-    #[arg(long, value_name = "K", value_parser = parse_stride, conflicts_with = "realtime")]
-    stride: Option<NonZeroUsize>,
-    /// Let frames arrive at this rate, as from a camera with a buffer of one frame: those that arrive while tracking is
-    /// busy are skipped, and their boxes predicted. It depends on measured times, so the boxes differ from run to run
-    #[arg(long, value_name = "FPS", value_parser = parse_positive)]
-    realtime: Option<f64>,
-    /// How many threads weigh particles; the boxes do not depend on it [default: one a core]
-    #[arg(long, value_name = "N", value_parser = parse_count)]
-    threads: Option<usize>,
-    /// Add the milliseconds of each stage to the summary, and of each frame to csv and jsonl rows
-    #[arg(long)]
-    pub timing: bool,
-    /// Make the summary (on standard error) one JSON object
-    #[arg(long)]
-    pub json: bool,
-    /// No progress bar and no summary (--json still gives its object)
-    #[arg(long)]
-    pub quiet: bool,
-}
 
 /// The tracker that the flags choose, with its parameters.
 enum Chosen {
@@ -209,6 +157,11 @@ impl TrackArgs {
 
     fn open_auto(&self) -> Result<(Sequence, Vec<Rect>)> {
         let options = OpenOptions { target: None, ..self.open_options() };
+        if sequence::is_stream(&self.input, &options)? {
+            let input = if self.input == "-" { "standard input".to_owned() } else { self.input.clone() };
+            let purpose = "--init auto";
+            return Err(SequenceError::ReadOnce { input, purpose }.into());
+        }
         let number = self.target.unwrap_or(1);
         let found = auto_init::find(&self.input, &options, number)?;
         let options = OpenOptions { start: Some(found.frame), ..options };
@@ -225,7 +178,14 @@ impl TrackArgs {
     }
 
     fn open_options(&self) -> OpenOptions {
-        OpenOptions { target: self.target, start: self.start, end: self.end, origin: self.origin }
+        OpenOptions {
+            target: self.target,
+            start: self.start,
+            end: self.end,
+            origin: self.origin,
+            live: self.live,
+            input_format: self.input_format.clone(),
+        }
     }
 
     fn pace(&self) -> Pace {

@@ -68,6 +68,17 @@ pub fn parse_count(text: &str) -> Result<usize, String> {
     }
 }
 
+/// More threads than any machine for this has, and than would start in reasonable time.
+const MOST_THREADS: usize = 512;
+
+/// A number of threads.
+pub fn parse_threads(text: &str) -> Result<usize, String> {
+    match parse_count(text)? {
+        threads if threads <= MOST_THREADS => Ok(threads),
+        _ => Err(format!("give at most {MOST_THREADS}; more than there are cores make nothing faster")),
+    }
+}
+
 /// The trackers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum TrackerName {
@@ -118,6 +129,12 @@ mod tests {
     #[test]
     fn boxes_parse_with_signs_spaces_and_fractions() {
         assert_eq!(parse_box("-3, 4.5,1e1,20"), Ok(Rect::new(-3.0, 4.5, 10.0, 20.0)));
+    }
+
+    #[test]
+    fn threads_have_an_end() {
+        assert_eq!(parse_threads("512"), Ok(512));
+        assert!(parse_threads("100000").unwrap_err().contains("at most 512") && parse_threads("0").is_err());
     }
 
     #[test]

@@ -7,7 +7,7 @@ use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, metadata::Orie
 use super::SequenceError;
 use crate::frame::{Frame, PixelFormat};
 
-/// Decodes a JPEG, PNG or BMP file, whatever its name says. Grey stays grey, all else becomes RGB; 16-bit samples are
+/// Decodes a JPEG, PNG, BMP, TIFF (its first page) or WebP file, whatever its name says. Grey stays grey, all else becomes RGB; 16-bit samples are
 /// scaled to 8 bits, alpha is dropped, and the image is turned upright as its EXIF orientation says.
 ///
 /// # Errors
@@ -62,9 +62,15 @@ pub(crate) fn decode(bytes: &[u8]) -> Result<Frame, String> {
 
 fn format_of(bytes: &[u8]) -> Result<ImageFormat, String> {
     match image::guess_format(bytes) {
-        Ok(format @ (ImageFormat::Jpeg | ImageFormat::Png | ImageFormat::Bmp)) => Ok(format),
+        Ok(
+            format @ (ImageFormat::Jpeg
+            | ImageFormat::Png
+            | ImageFormat::Bmp
+            | ImageFormat::Tiff
+            | ImageFormat::WebP),
+        ) => Ok(format),
         _ if bytes.is_empty() => Err("the file is empty".to_owned()),
-        _ => Err("the file is no JPEG, PNG or BMP image".to_owned()),
+        _ => Err("the file is no JPEG, PNG, BMP, TIFF or WebP image".to_owned()),
     }
 }
 
@@ -184,6 +190,26 @@ mod tests {
     }
 
     #[test]
+    fn tiff_and_webp_are_images_too_and_cut_ones_are_not() {
+        for format in [ImageFormat::Tiff, ImageFormat::WebP] {
+            let mut bytes = Cursor::new(Vec::new());
+            gradient().write_to(&mut bytes, format).unwrap();
+            let bytes = bytes.into_inner();
+            let frame = decode(&bytes).unwrap();
+            assert_eq!((frame.width(), frame.height()), (64, 48), "{format:?}");
+            let pixel = gradient().get_pixel(5, 7).0;
+            assert_eq!(&frame.view().row(7)[15..18], &pixel[..], "{format:?} is without loss");
+            assert_eq!(probe(&bytes), Ok((64, 48)));
+            assert!(decode(&bytes[..bytes.len() / 2]).is_err(), "{format:?}");
+        }
+        let mut bytes = Cursor::new(Vec::new());
+        let grey: ImageBuffer<Luma<u16>, Vec<u16>> = ImageBuffer::from_raw(2, 1, vec![0, 0xFFFF]).unwrap();
+        grey.write_to(&mut bytes, ImageFormat::Tiff).unwrap();
+        let frame = decode(&bytes.into_inner()).unwrap();
+        assert_eq!((frame.view().format(), frame.view().row(0)), (PixelFormat::Gray, &[0, 255][..]));
+    }
+
+    #[test]
     fn alpha_is_dropped_and_not_blended() {
         let rgba = ImageBuffer::from_pixel(1, 1, Rgba([10u8, 20, 30, 0]));
         assert_eq!(decode(&png(&rgba)).unwrap().view().row(0), &[10, 20, 30]);
@@ -255,7 +281,10 @@ mod tests {
 
     #[test]
     fn what_is_no_image_says_so() {
-        assert_eq!(decode(b"hello, I am text").unwrap_err(), "the file is no JPEG, PNG or BMP image");
+        assert_eq!(
+            decode(b"hello, I am text").unwrap_err(),
+            "the file is no JPEG, PNG, BMP, TIFF or WebP image"
+        );
         assert_eq!(decode(b"").unwrap_err(), "the file is empty");
     }
 }

@@ -25,7 +25,7 @@ pub enum SequenceError {
         source: std::io::Error,
     },
     /// The input names nothing.
-    #[error("{path}: no such file or folder; check the spelling, or give an OTB folder, a folder or quoted glob of images, or a video file", path = path.display())]
+    #[error("{path}: no such file or folder; check the spelling, or give a benchmark's sequence, a folder or quoted glob of images, a video file, a URL, or - for standard input{hint}", path = path.display(), hint = dash_hint(path))]
     NoSuchInput {
         /// The input as given.
         path: PathBuf,
@@ -39,7 +39,7 @@ pub enum SequenceError {
         reason: String,
     },
     /// A folder or glob in which no image is found.
-    #[error("{path}: no images there; give a folder or glob of .jpg, .jpeg, .png or .bmp files", path = path.display())]
+    #[error("{path}: no images there; give a folder or glob of .jpg, .png, .bmp, .tif or .webp files", path = path.display())]
     NoImages {
         /// The folder or pattern.
         path: PathBuf,
@@ -153,6 +153,42 @@ pub enum SequenceError {
         /// ffmpeg's own last message.
         message: String,
     },
+    /// A URL whose scheme is not one of those that are passed on.
+    #[error("{url}: there is no way to read `{scheme}`; give one of: {}", schemes.join(", "))]
+    UnknownScheme {
+        /// The URL as given.
+        url: String,
+        /// Its scheme.
+        scheme: String,
+        /// Those that are known.
+        schemes: &'static [&'static str],
+    },
+    /// Live wanted of what is no stream.
+    #[error(
+        "{input}: --live is for streams (a device, a URL, a FIFO or standard input); a file can be played as from a camera with --realtime FPS"
+    )]
+    NotLive {
+        /// The input as given.
+        input: String,
+    },
+    /// A stream wanted twice.
+    #[error(
+        "{input}: a stream can be read only once, and {purpose} reads it twice; record it first, or give --init X,Y,W,H"
+    )]
+    ReadOnce {
+        /// The input as given.
+        input: String,
+        /// What reads it twice.
+        purpose: &'static str,
+    },
+    /// A name of an input format that is none.
+    #[error(
+        "--input-format {format}: a name of ffmpeg's has letters, digits and _ only; `ffmpeg -devices` lists them"
+    )]
+    InputFormat {
+        /// The name as given.
+        format: String,
+    },
     /// A video that broke off.
     #[error("{path}: the video broke off after frame {last_good}: {message}; repair the file, or stop before with --end {last_good}", path = path.display())]
     VideoBroken {
@@ -181,6 +217,26 @@ pub enum RowProblem {
     /// Not four numbers.
     #[error("has {0} numbers instead of 4")]
     Count(usize),
+    /// A flag of a frame that is none.
+    #[error("is no whole number from 0 to {most}")]
+    NoFlag {
+        /// The largest.
+        most: u8,
+    },
+    /// Not a flag for each row of the ground truth.
+    #[error("begins {flags} flags of frames, but the ground truth has {rows} rows")]
+    Flags {
+        /// Flags in the file.
+        flags: usize,
+        /// Rows of the ground truth.
+        rows: usize,
+    },
+}
+
+/// What begins with a dash may be meant for a file.
+fn dash_hint(path: &std::path::Path) -> String {
+    let name = path.display().to_string();
+    if name.starts_with('-') { format!("; a file of that name is ./{name}") } else { String::new() }
 }
 
 fn listed(targets: &[usize]) -> String {

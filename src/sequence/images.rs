@@ -12,7 +12,7 @@ use super::{
     size_guard::SizeGuard,
 };
 
-const EXTENSIONS: [&str; 4] = ["jpg", "jpeg", "png", "bmp"];
+const EXTENSIONS: [&str; 7] = ["jpg", "jpeg", "png", "bmp", "tif", "tiff", "webp"];
 
 /// Image files, decoded one at a time.
 #[derive(Debug)]
@@ -88,6 +88,13 @@ pub(super) fn has_image_extension(path: &Path) -> bool {
 /// A file's name without its folder, for messages.
 pub(super) fn file_name(path: &Path) -> String {
     path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
+}
+
+/// The folder's own name, also where the path ends in `.` or `..`.
+pub(super) fn folder_name(path: &Path) -> String {
+    let name = |path: &Path| path.file_name().map(|name| name.to_string_lossy().into_owned());
+    let resolved = || std::path::absolute(path).ok().and_then(|path| path.canonicalize().ok());
+    name(path).or_else(|| resolved().and_then(|path| name(&path))).unwrap_or_else(|| file_name(path))
 }
 
 fn is_image_file(path: &Path) -> bool {

@@ -1,6 +1,6 @@
 //! Where frames and ground truth come from. A source streams: it holds one frame at a time.
 //!
-//! [`open`] takes an OTB folder, a folder or glob of images, one image, or a video (through the ffmpeg program);
+//! [`open`] takes a sequence of a benchmark, a folder or glob of images, one image, or a video or a stream (through the ffmpeg program);
 //! [`Walker`] renders a sequence that needs no data.
 //!
 //! ```no_run
@@ -22,6 +22,7 @@ use crate::{
     geometry::{Origin, Rect},
 };
 
+mod benchmark;
 mod decode;
 mod error;
 mod ground_truth;
@@ -34,11 +35,14 @@ mod size_guard;
 mod video;
 mod walker;
 
+pub use benchmark::{
+    Benchmark, BenchmarkSequence, BenchmarkTruth, FramePlace, PolygonBox, benchmark_sequences,
+};
 pub(crate) use decode::decode as decode_bytes;
 pub use decode::{decode_image, probe_image};
 pub use error::{RowProblem, SequenceError};
 pub use ground_truth::{parse_boxes, parse_ground_truth, read_boxes, read_ground_truth};
-pub use open::open;
+pub use open::{is_stream, open};
 pub use otb::{OtbImages, OtbTarget, otb_images, otb_targets};
 pub use walker::{Absence, Companion, Occluder, Walker, WalkerOptions};
 
@@ -94,4 +98,9 @@ pub struct OpenOptions {
     pub end: Option<usize>,
     /// The number of the first pixel in the input's boxes, if it is not the usual one.
     pub origin: Option<Origin>,
+    /// Of a stream, deliver the newest frame each time and leave out those that came meanwhile. Devices are always read so.
+    pub live: bool,
+    /// ffmpeg's name (`-f`) of what the input is: a capture device's, such as `v4l2`, `avfoundation` or `dshow`, to which the input
+    /// is passed as it stands.
+    pub input_format: Option<String>,
 }

@@ -8,9 +8,8 @@ use std::{
 use super::{
     OpenOptions, Sequence, SequenceError,
     ground_truth::parse_ground_truth,
-    images::{ImageFiles, file_name, images_in},
+    images::{ImageFiles, file_name, folder_name, images_in},
     natural::number_in_name,
-    open::folder_name,
     range::FrameRange,
 };
 use crate::geometry::{Origin, Rect};

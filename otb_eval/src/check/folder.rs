@@ -5,7 +5,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use infopart::sequence::otb_targets;
+use infopart::sequence::{benchmark_sequences, otb_targets};
 
 use super::file_name;
 
@@ -44,7 +44,9 @@ pub(super) fn without_targets(path: &Path) -> Vec<String> {
 
 fn without_target(folder: &Path) -> Option<String> {
     // One that cannot be read is told by whoever reads it.
-    if otb_targets(folder).map_or(true, |targets| !targets.is_empty()) {
+    let is_known = otb_targets(folder).map_or(true, |targets| !targets.is_empty())
+        || benchmark_sequences(folder).map_or(true, |found| !found.is_empty());
+    if is_known {
         return None;
     }
     let at = folder.display();

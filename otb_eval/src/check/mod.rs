@@ -61,9 +61,9 @@ impl Finding {
 pub struct CheckedTarget {
     /// The benchmark's name for it, or the folder's own.
     pub name: String,
-    /// Its folder; `None` if only its boxes are known.
+    /// Its folder or file of ground truth; `None` if only its boxes are known.
     pub folder: Option<PathBuf>,
-    /// K of `groundtruth_rect.K.txt`.
+    /// Which of the folder's targets, if they are numbered.
     pub target: Option<usize>,
     /// Rows of ground truth that count.
     pub rows: usize,

@@ -13,7 +13,7 @@ use crate::{
 
 /// How the target's file is written: what separates numbers, the line ends, and whether the last one is there.
 pub(super) fn written(frames: &FrameFolder, findings: &mut Vec<Finding>) -> Option<String> {
-    let targets = otb_targets(&frames.path).ok()?;
+    let targets = if frames.path.is_dir() { otb_targets(&frames.path).ok()? } else { Vec::new() };
     for path in annotations(&frames.path) {
         if fs::metadata(&path).is_ok_and(|file| file.len() == 0) {
             findings
@@ -24,8 +24,7 @@ pub(super) fn written(frames: &FrameFolder, findings: &mut Vec<Finding>) -> Opti
         let names: Vec<&str> = targets.iter().map(|target| target.name.as_str()).collect();
         findings.push(Finding::oddity(format!("its folder has several targets: {}", names.join(", "))));
     }
-    let own = targets.iter().find(|target| target.number == frames.target)?;
-    let bytes = fs::read(&own.ground_truth).ok()?;
+    let bytes = fs::read(&frames.ground_truth).ok()?;
     let text = String::from_utf8_lossy(&bytes);
     let Separators { comma, tab, space, .. } = Separators::of(&text);
     let found = [(comma, "comma"), (tab, "tab"), (space, "space")];
@@ -54,10 +53,22 @@ pub(super) fn rows(target: &Target, images: Option<usize>, findings: &mut Vec<Fi
             findings.push(Finding::oddity(format!("{} {rows} {what}; the first is row {first}", odd.len())));
         }
     };
+    if target.annotations.first_only {
+        findings
+            .push(Finding::oddity("only its first box is known: the benchmark's server keeps the others"));
+        return;
+    }
     tell(&is_nan, "with NaN (the target is absent)");
     tell(&has_no_area, "without area, which toolkits score differently");
     tell(&is_at_zero, "with x or y of 0 or less, which some toolkits take for invalid");
-    tell(&|row| row.is_proper() && numbers(row).iter().any(|number| number.fract() != 0.0), "with fractions");
+    // Elsewhere fractions are the rule.
+    if target.annotations.benchmark.is_none() {
+        tell(
+            &|row| row.is_proper() && numbers(row).iter().any(|number| number.fract() != 0.0),
+            "with fractions",
+        );
+    }
+    of_benchmark(target, findings);
     if !truth.first().is_some_and(Rect::is_proper) {
         let remedy = "write a box there, or remove the frames before the target appears";
         findings.push(Finding::damage(format!("the first row is no box, so no tracker can start; {remedy}")));
@@ -66,6 +77,22 @@ pub(super) fn rows(target: &Target, images: Option<usize>, findings: &mut Vec<Fi
         && truth.len() != known.rows
     {
         findings.push(other_length(truth.len(), known.rows, images));
+    }
+}
+
+/// What the benchmark says of frames besides their boxes.
+fn of_benchmark(target: &Target, findings: &mut Vec<Finding>) {
+    let absent = target.annotations.absent.iter().filter(|absent| **absent).count();
+    let unseen = target.annotations.cover.iter().filter(|eighths| **eighths == 0).count();
+    let rows = |count: usize| if count == 1 { "row" } else { "rows" };
+    if absent > 0 {
+        findings.push(Finding::oddity(format!("{absent} {} marked as without the target", rows(absent))));
+    }
+    if unseen > 0 {
+        findings.push(Finding::oddity(format!(
+            "{unseen} {} in which nothing of the target is seen",
+            rows(unseen)
+        )));
     }
 }
 

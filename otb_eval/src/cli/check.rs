@@ -16,6 +16,7 @@ pub const EXAMPLES: &str = "\
 Examples:
   otb_eval check otb                     # a folder of sequences: people/, ships/ and so on too
   otb_eval check otb/Crossing --decode   # one sequence, every pixel decoded
+  otb_eval check LaSOT GOT-10k/val       # other data sets, recognised by what is in their folders
   otb_eval check OTB100.json             # boxes alone: which rows and labels are odd
   otb_eval check otb people --json check.json
 
@@ -27,7 +28,7 @@ Exit codes: 0 nothing is damaged, 1 internal failure, 2 something is damaged (it
 
 #[derive(Debug, Args)]
 pub struct CheckArgs {
-    /// Folders of OTB sequences, or single ones (img/ and groundtruth_rect.txt), or JSON files of boxes
+    /// Data sets or single sequences (OTB, UAV123, LaSOT, GOT-10k, TrackingNet, NfS, VOT, TLD, TC128), or JSON files of boxes
     #[arg(value_name = "DATA", required = true)]
     data: Vec<PathBuf>,
     /// Decode every image, which takes a few milliseconds each

@@ -6,9 +6,9 @@ use anyhow::Result;
 use clap::Args;
 use infopart::{output::TextTable, program::BadInput};
 use otb_eval::{
-    compare::{Comparison, Pair, RESAMPLES, compare},
+    compare::Comparison,
     protocol::Protocol,
-    scoring::{Measure, Table, TrackerScores},
+    scoring::{Measure, Table, TrackerScores, common_seeds, compare_scores},
     toolkits::Toolkit,
 };
 use serde::Serialize;
@@ -25,11 +25,9 @@ Examples:
   otb_eval compare ATOM KCF --data OTB100.json --results published --toolkit pysot
 
 A difference is A minus B, paired by sequence and seed; positive is better for A. Its 95 % interval is a bootstrap that \
-draws sequences, and seeds within them: where it spans 0, other sequences could well reverse it. Times are compared \
+draws sequences, and seeds within them: where it spans 0, other sequences could well reverse it. p is the two-sided \
+probability by Wilcoxon's signed-rank test over sequences. Times are compared \
 only if both were measured on one machine with nothing else running.";
-
-/// Seed of the bootstrap: the same results give the same interval.
-const BOOTSTRAP_SEED: u64 = 1;
 
 #[derive(Debug, Args)]
 pub struct CompareArgs {
@@ -41,9 +39,9 @@ pub struct CompareArgs {
     second: String,
     #[command(flatten)]
     scored: ScoredArgs,
-    /// Whose rules
-    #[arg(long, value_name = "NAME", default_value = "plain")]
-    toolkit: Toolkit,
+    /// Whose rules, as `otb_eval score` has them [default: the data set's own; for OTB plain]
+    #[arg(long, value_name = "NAME")]
+    toolkit: Option<Toolkit>,
     /// Which results: ope, tre or sre
     #[arg(long, value_name = "ope|tre|sre", default_value = "ope")]
     protocol: Protocol,
@@ -71,7 +69,8 @@ pub fn run(args: &CompareArgs) -> Result<()> {
     let (dataset, mut problems) = args.scored.data.open()?;
     let names = [args.first.clone(), args.second.clone()];
     let results = args.scored.open_results(args.protocol)?.only(&names)?;
-    let (table, unscored) = args.scored.score(&dataset, &results, args.toolkit, args.protocol)?;
+    let toolkit = args.toolkit.unwrap_or_else(|| Toolkit::of(dataset.benchmark()));
+    let (table, unscored) = args.scored.score(&dataset, &results, toolkit, args.protocol)?;
     tell(&unscored, &mut problems);
     let outcome = outcome(args, &table)?;
     print(&text(&outcome))?;
@@ -83,11 +82,10 @@ pub fn run(args: &CompareArgs) -> Result<()> {
 
 fn outcome(args: &CompareArgs, table: &Table) -> Result<Outcome> {
     let (first, second) = (&table.trackers[0], &table.trackers[1]);
-    let seeds: Vec<u64> = first.seeds.iter().copied().filter(|seed| second.seeds.contains(seed)).collect();
     let of = |measure: Measure| {
-        compare(&pairs(first, second, &seeds, measure), RESAMPLES, BOOTSTRAP_SEED).ok_or_else(|| {
+        compare_scores(first, second, measure).ok_or_else(|| {
             BadInput(format!(
-                "{} and {} have no sequence and seed in common; run both with the same --sequences and --seeds",
+                "{} and {} have no sequence in common; run both with the same --sequences",
                 args.first, args.second
             ))
         })
@@ -96,26 +94,12 @@ fn outcome(args: &CompareArgs, table: &Table) -> Result<Outcome> {
         first: args.first.clone(),
         second: args.second.clone(),
         protocol: args.protocol,
-        toolkit: args.toolkit,
+        toolkit: table.toolkit,
         auc: of(Measure::Auc)?,
         precision: of(Measure::Precision)?,
         time_ratio: time_ratio(first, second),
-        seeds,
+        seeds: common_seeds(first, second),
     })
-}
-
-/// Sequences that both have with some seed, with the values of the seeds that both have.
-fn pairs(first: &TrackerScores, second: &TrackerScores, seeds: &[u64], measure: Measure) -> Vec<Pair> {
-    let value = |one: &TrackerScores, row: usize, seed: u64| {
-        let place = one.seeds.iter().position(|known| *known == seed)?;
-        measure.on(one.sequences[row].curves[place].as_ref()?)
-    };
-    let pair = |(row, scores): (usize, &otb_eval::scoring::SequenceScores)| {
-        let both = |seed: &u64| Some((value(first, row, *seed)?, value(second, row, *seed)?));
-        let (first, second): (Vec<f64>, Vec<f64>) = seeds.iter().filter_map(both).unzip();
-        Pair { sequence: scores.sequence.clone(), first, second }
-    };
-    first.sequences.iter().enumerate().map(pair).filter(|pair| !pair.first.is_empty()).collect()
 }
 
 fn time_ratio(first: &TrackerScores, second: &TrackerScores) -> Option<f64> {
@@ -132,13 +116,17 @@ fn time_ratio(first: &TrackerScores, second: &TrackerScores) -> Option<f64> {
 fn text(outcome: &Outcome) -> String {
     let Outcome { first, second, auc, precision, .. } = outcome;
     let mut text = format!(
-        "{first} against {second}: {} under the rules of {}, {} sequences, {} paired seed(s)\n\n",
+        "{first} against {second}: {} under the rules of {}, {} sequences, {}\n\n",
         outcome.protocol.title(),
         outcome.toolkit,
         auc.sequences.len(),
-        outcome.seeds.len()
+        match outcome.seeds.len() {
+            0 => "each one's mean over its own seeds, of which none is in common".to_owned(),
+            count => format!("{count} paired seed(s)"),
+        }
     );
-    let mut summary = TextTable::new(["measure", first, second, "difference", "95 % interval", "", "wins"]);
+    let mut summary =
+        TextTable::new(["measure", first, second, "difference", "95 % interval", "", "p", "wins"]);
     for (measure, one) in [(Measure::Auc, auc), (Measure::Precision, precision)] {
         summary.row([
             measure.title().to_owned(),
@@ -147,6 +135,7 @@ fn text(outcome: &Outcome) -> String {
             format!("{:+.4}", one.difference),
             format!("[{:+.4}, {:+.4}]", one.low, one.high),
             if one.is_clear() { "clear".into() } else { "spans 0".to_owned() },
+            format!("{:.4}", one.p_value),
             format!("{} : {}", one.first_wins, one.second_wins),
         ]);
     }

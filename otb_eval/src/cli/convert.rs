@@ -24,10 +24,12 @@ Layouts:
   flat        TRACKER/SEQ.txt, SEQ_time.txt beside
   pysot       TRACKER/SEQ.txt, no times
   got10k      OTB2015/TRACKER/SEQ.txt, times/SEQ_time.txt
+  got10k-set  TRACKER/SEQ/SEQ_00K.txt, repetition K being a seed; SEQ/SEQ_time.txt, a column a repetition
   pytracking  TRACKER/PARAM[_RRR]/SEQ.txt with tabs, SEQ_time.txt beside; RRR is the seed
   jwlim       OPE|TRE|SRE/TRACKER/SEQ.json of the Python benchmark: frames/s instead of times
 
-Sequences get the spelling of the layout (Jogging-1, Jogging_1, Jogging.1); boxes keep every digit.
+Sequences get the spelling of the layout (Jogging-1, Jogging_1, Jogging.1), and what --prefix says before it; boxes keep every \
+digit. uav_ and nfs_ before names are left out when they are read.
 
 The .mat files of the MATLAB benchmark are read by a script with SciPy:
   python3 otb_eval/scripts/mat_to_text.py results_OPE/*.mat --out results
@@ -52,6 +54,9 @@ pub struct ConvertArgs {
     /// Only these trackers [default: all there are]
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     trackers: Vec<String>,
+    /// Put before every sequence's name, as pytracking has uav_ for UAV123 and nfs_ for Need for Speed
+    #[arg(long, value_name = "TEXT", default_value = "")]
+    prefix: String,
     /// Only results of this protocol [default: all there are]
     #[arg(long, value_name = "ope|tre|sre")]
     protocol: Option<Protocol>,
@@ -88,6 +93,7 @@ pub fn run(args: &ConvertArgs) -> Result<()> {
         let protocol = args.protocol.map_or("", Protocol::name);
         return Err(BadInput(format!("{}: no results of {protocol} there", args.input.display())).into());
     }
+    tracks.iter_mut().for_each(|track| track.sequence.insert_str(0, &args.prefix));
     let files = write(args.to, &args.output, &tracks)?;
     eprintln!("{} results in {files} files written to {}", tracks.len(), args.output.display());
     problems.into_result()

@@ -3,14 +3,15 @@
 use std::{fmt::Display, path::PathBuf};
 
 use anyhow::{Context, Result};
-use clap::Args;
-use infopart::program::BadInput;
+use clap::{Args, ValueEnum};
+use infopart::{program::BadInput, sequence::PolygonBox};
 use otb_eval::{catalogue, dataset::Dataset, protocol::HiddenFrames};
 
 #[derive(Debug, Args)]
 pub struct DataArgs {
-    /// Folders of OTB sequences, or single ones (img/ and groundtruth_rect.txt); where frames are not needed, also a
-    /// JSON file of boxes such as OTB100.json
+    /// Data sets or single sequences, recognised by what is in them: OTB, UAV123, UAV20L (its anno/UAV20L), LaSOT, GOT-10k (its
+    /// train, val or test), TrackingNet (its TEST), NfS, VOT, TLD, TC128; where frames are not needed, also a JSON file of
+    /// boxes such as OTB100.json
     #[arg(long, value_name = "DATA", num_args = 1..)]
     pub data: Vec<PathBuf>,
     /// Sequences by name, in any toolkit's spelling, and lists of them: tb100, tb50, cvpr13, person, people8, people11,
@@ -21,16 +22,31 @@ pub struct DataArgs {
     /// built in, and of more sequences
     #[arg(long, value_name = "DIR")]
     init_omit: Option<PathBuf>,
+    /// The box of a polygon of VOT: min-max, as most have it, or equal-area, as got10k and pysot
+    #[arg(long, value_enum, default_value_t = Polygons::MinMax)]
+    polygons: Polygons,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Polygons {
+    /// Between its smallest and largest coordinates
+    MinMax,
+    /// Of its area, about the mean of its corners
+    EqualArea,
 }
 
 impl DataArgs {
     /// The data, and the problems of sequences that could not be read.
     pub fn open(&self) -> Result<(Dataset, Problems)> {
         if self.data.is_empty() {
-            let how = "give --data: folders of OTB sequences, single ones, or a JSON file of boxes";
+            let how = "give --data: folders of data sets, single sequences, or a JSON file of boxes";
             return Err(BadInput(how.into()).into());
         }
-        let (mut dataset, unreadable) = Dataset::open(&self.data).context("--data")?;
+        let polygons = match self.polygons {
+            Polygons::MinMax => PolygonBox::MinMax,
+            Polygons::EqualArea => PolygonBox::EqualArea,
+        };
+        let (mut dataset, unreadable) = Dataset::open_with(&self.data, polygons).context("--data")?;
         dataset.hide(&self.hidden()?);
         let mut problems = Problems::default();
         for problem in unreadable {

@@ -28,6 +28,7 @@ mod report;
 mod run;
 mod score;
 mod scored;
+mod submit;
 mod supervise;
 
 const EXAMPLES: &str = "\
@@ -38,6 +39,9 @@ Examples, in the order of an evaluation (otb and people are folders of OTB seque
   otb_eval compare infopart whole-body --data otb people --results results
   otb_eval plot --data otb people --results results --out plots
   otb_eval report --data otb people --results results --out report.html
+
+Other data sets are recognised by what is in their folders, and scored by their own rules:
+  otb_eval score --data LaSOT --results results
 
 Results of other trackers, RESULTS/TRACKER/SEQ.txt, against the boxes of OTB100.json, as six toolkits would score them:
   otb_eval score --data OTB100.json --results published --toolkit all
@@ -50,7 +54,7 @@ Exit codes:
   2    bad input: a flag, a file, a sequence or a result; what could be done is done
   130  interrupted with Ctrl-C";
 
-/// Runs trackers over TB-100, scores them as every toolkit would, plots, compares and reports.
+/// Runs trackers over TB-100 and other data sets, scores them as every toolkit would, plots, compares and reports.
 #[derive(Debug, Parser)]
 #[command(name = "otb_eval", version, max_term_width = 120, after_help = EXAMPLES)]
 struct Cli {
@@ -84,6 +88,9 @@ enum Command {
     /// Run a tracker's command so that it ends when the evaluation does; `run` uses it
     #[command(name = SUPERVISE, hide = true)]
     Supervise(supervise::SuperviseArgs),
+    /// Make the archive that the server of GOT-10k or TrackingNet takes
+    #[command(after_help = submit::EXAMPLES)]
+    Submit(submit::SubmitArgs),
     /// Draw success and precision plots
     #[command(after_help = plot::EXAMPLES)]
     Plot(Box<plot::PlotArgs>),
@@ -102,6 +109,7 @@ pub fn main() -> ExitCode {
         Command::Compare(args) => compare::run(&args),
         Command::Convert(args) => convert::run(&args),
         Command::Supervise(args) => return supervise::supervise(&args),
+        Command::Submit(args) => submit::submit(&args),
         Command::Plot(args) => plot::plot(&args),
         Command::Report(args) => report::report(&args),
     };

@@ -1,21 +1,21 @@
 //! `otb_eval score`: tables under one toolkit's rules, or under all six.
 
 use std::{
-    fmt::Write as _,
     io::Write as _,
     path::{Path, PathBuf},
 };
 
 use anyhow::Result;
-use clap::Args;
+use clap::{Args, ValueEnum, builder::TypedValueParser as _};
 use infopart::{
-    output::{Destination, OutputError, StandardOutput, TextTable},
+    output::{Destination, OutputError, StandardOutput},
     program::BadInput,
 };
 use otb_eval::{
     protocol::Protocol,
-    scoring::{Measure, ScoreProblem, Spread, Table, TrackerScores},
+    scoring::{LongTermScores, Measure, ScoreProblem, Table},
     store::write_whole,
+    tables::{self, Digits, OverallOptions, ScoreTable, TableFormat},
     toolkits::{Toolkit, UnknownToolkit},
 };
 
@@ -29,6 +29,10 @@ pub const EXAMPLES: &str = "\
 Examples:
   otb_eval score --data otb people --results results
   otb_eval score --data OTB100.json --results published --toolkit matlab --json scores.json
+
+For a paper: LaTeX with every tracker tested against one, percentages; a spreadsheet of every sequence:
+  otb_eval score --data OTB100.json --results published --toolkit pysot --format latex --percent --against ATOM
+  otb_eval score --data OTB100.json --results published --format csv --table sequence > auc.csv
 
 Where the six toolkits differ, and why; and the rules of one:
   otb_eval score --data OTB100.json --results published --toolkit all
@@ -48,21 +52,65 @@ Exit codes: 0 everything is scored, defects of others' results too, which are li
 pub struct ScoreArgs {
     #[command(flatten)]
     scored: ScoredArgs,
-    /// Whose rules: plain (no toolkit's special rules), matlab, jwlim, pysot, stvir, got10k, pytracking, or all six
-    #[arg(long, value_name = "NAME|all", default_value = "plain", value_parser = parse_toolkits)]
-    toolkit: Toolkits,
+    /// Whose rules: plain (no toolkit's special rules), matlab, jwlim, pysot, stvir, got10k, pytracking, or all six; or a data
+    /// set's: lasot, uav123, got10k-ao [default: the data set's own; for OTB plain]
+    #[arg(long, value_name = "NAME|all", value_parser = parse_toolkits)]
+    toolkit: Option<Toolkits>,
     /// Which results: ope, tre or sre
     #[arg(long, value_name = "ope|tre|sre", default_value = "ope")]
     protocol: Protocol,
-    /// What the tables by sequence and by attribute show: auc, precision, success, normalised, normalised-area or overlap
+    /// What the tables by sequence and by attribute show: auc, precision, success, success-75, normalised,
+    /// normalised-area or overlap
     #[arg(long, value_name = "NAME", default_value = "auc")]
     measure: Measure,
+    /// The measures of the table over all sequences [default: those that the rules have]
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
+    measures: Option<Vec<Measure>>,
+    /// How tables are written: text, csv (every digit), markdown or latex (booktabs)
+    #[arg(long, value_name = "text|csv|markdown|latex", default_value = "text")]
+    format: TableFormat,
+    /// Which tables [default: all as text, else overall]
+    #[arg(long, value_enum, value_delimiter = ',')]
+    table: Option<Vec<TableKind>>,
+    /// Digits after the point [default: 4 as text, else 3; with --percent 2 and 1]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(0..=15).map(usize::from))]
+    digits: Option<usize>,
+    /// Show scores as percentages
+    #[arg(long)]
+    percent: bool,
+    /// Show the 95 % interval over sequences beside every score of the table over all sequences; csv always has it
+    #[arg(long)]
+    intervals: bool,
+    /// Test every tracker against this one, in --measure: the mean difference, its 95 % interval and the probability by
+    /// Wilcoxon's signed-rank test over sequences, also corrected by Holm's rule for the number of trackers
+    #[arg(long, value_name = "TRACKER")]
+    against: Option<String>,
     /// Write everything, curves too, as JSON
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
     /// State thresholds, inequalities and rules in force, and score nothing
     #[arg(long)]
     explain: bool,
+}
+
+/// A table that can be asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum TableKind {
+    /// Trackers over all sequences
+    Overall,
+    /// Trackers over all sequences in --measure alone, with intervals, and the test of --against
+    Certainty,
+    /// --measure by attribute
+    Attribute,
+    /// --measure by sequence
+    Sequence,
+    /// F, precision and recall where targets are absent for a while, with --long-term
+    LongTerm,
+}
+
+impl TableKind {
+    /// Those of scores over all frames.
+    const OF_EVERY_FRAME: [Self; 4] = [Self::Overall, Self::Certainty, Self::Attribute, Self::Sequence];
 }
 
 /// One toolkit or all six.
@@ -77,26 +125,36 @@ pub fn parse_toolkits(word: &str) -> Result<Toolkits, UnknownToolkit> {
 }
 
 pub fn score(args: &ScoreArgs) -> Result<()> {
-    let toolkits = match args.toolkit {
+    let toolkits_of = |chosen| match chosen {
         Toolkits::One(toolkit) => vec![toolkit],
         Toolkits::Six => Toolkit::SIX.to_vec(),
     };
     if args.explain {
+        let toolkits = toolkits_of(args.toolkit.unwrap_or(Toolkits::One(Toolkit::Plain)));
         let texts: Vec<String> =
             toolkits.iter().map(|toolkit| args.scored.rules(*toolkit).explain()).collect();
         return print(&texts.join("\n"));
     }
     let results = args.scored.open_results(args.protocol)?;
     let (dataset, mut problems) = args.scored.data.open()?;
+    let chosen = args.toolkit.unwrap_or_else(|| Toolkits::One(Toolkit::of(dataset.benchmark())));
     let mut scored = Vec::new();
-    for toolkit in toolkits {
+    for toolkit in toolkits_of(chosen) {
         scored.push(args.scored.score(&dataset, &results, toolkit, args.protocol)?);
     }
-    match args.toolkit {
-        Toolkits::One(_) => {
+    if chosen == Toolkits::Six && (args.format != TableFormat::Text || args.against.is_some()) {
+        return Err(BadInput(
+            "--toolkit all: --format and --against are of one toolkit's table; choose one".into(),
+        )
+        .into());
+    }
+    let mut long_term = None;
+    match chosen {
+        Toolkits::One(toolkit) => {
             let (table, unscored) = &scored[0];
             tell(unscored, &mut problems);
-            print(&text_of(table, args.measure))?;
+            long_term = args.scored.long_term(&dataset, &results, toolkit, false)?;
+            print(&args.written(table, long_term.as_deref())?)?;
         }
         Toolkits::Six => {
             tell_once(&scored, &mut problems);
@@ -104,7 +162,7 @@ pub fn score(args: &ScoreArgs) -> Result<()> {
         }
     }
     if let Some(path) = &args.json {
-        write_json(path, &scored)?;
+        write_json(path, &scored, long_term.as_deref())?;
     }
     problems.into_strict_result(args.scored.strict)
 }
@@ -117,7 +175,11 @@ fn tell_once(scored: &[(Table, Vec<ScoreProblem>)], problems: &mut Problems) {
     }
 }
 
-fn write_json(path: &Path, scored: &[(Table, Vec<ScoreProblem>)]) -> Result<()> {
+fn write_json(
+    path: &Path,
+    scored: &[(Table, Vec<ScoreProblem>)],
+    long_term: Option<&[LongTermScores]>,
+) -> Result<()> {
     let tables: Vec<serde_json::Value> = scored
         .iter()
         .map(|(table, problems)| {
@@ -126,7 +188,11 @@ fn write_json(path: &Path, scored: &[(Table, Vec<ScoreProblem>)]) -> Result<()> 
         })
         .collect::<Result<_, serde_json::Error>>()?;
     let program = format!("otb_eval {}", infopart::VERSION);
-    let text = serde_json::to_string_pretty(&serde_json::json!({ "program": program, "tables": tables }))?;
+    let mut all = serde_json::json!({ "program": program, "tables": tables });
+    if let Some(scores) = long_term {
+        all["long_term"] = serde_json::to_value(scores)?;
+    }
+    let text = serde_json::to_string_pretty(&all)?;
     write(path, format!("{text}\n").as_bytes())
 }
 
@@ -149,83 +215,103 @@ pub fn print(text: &str) -> Result<()> {
     })
 }
 
-fn text_of(table: &Table, measure: Measure) -> String {
-    let mut text = format!(
-        "{} under the rules of {} ({}), {} sequences; `--explain` states them\n\n",
-        table.protocol.title(),
-        table.toolkit,
-        table.toolkit.title(),
-        table.sequences.len()
-    );
-    // Writing to a String cannot fail.
-    let _ = writeln!(text, "{}", overall(table));
-    if let Some(source) = table.attributes {
-        let by_attribute = by_attribute(table, measure);
-        let _ = writeln!(text, "{} by attribute, as {source} has them\n{by_attribute}", measure.title());
+impl ScoreArgs {
+    /// The tables asked for, in the format asked for.
+    fn written(&self, table: &Table, long_term: Option<&[LongTermScores]>) -> Result<String> {
+        let is_text = self.format == TableFormat::Text;
+        let wanted = self.table.clone().unwrap_or_else(|| match (is_text, long_term) {
+            (true, Some(_)) => TableKind::value_variants().to_vec(),
+            (true, None) => TableKind::OF_EVERY_FRAME.to_vec(),
+            (false, Some(_)) => vec![TableKind::LongTerm],
+            (false, None) => vec![TableKind::Overall],
+        });
+        if self.format == TableFormat::Csv && wanted.len() > 1 {
+            return Err(BadInput(
+                "--format csv: give one table with --table, since each has its own columns".into(),
+            )
+            .into());
+        }
+        let digits = self.digits();
+        let mut parts = Vec::new();
+        for (place, kind) in wanted.iter().enumerate() {
+            for one in self.tables_of(*kind, table, long_term)? {
+                let heading = match (is_text, place) {
+                    (true, 0) => format!(
+                        "{} under the rules of {} ({}), {} sequences; `--explain` states them\n\n",
+                        table.protocol.title(),
+                        table.toolkit,
+                        table.toolkit.title(),
+                        table.sequences.len()
+                    ),
+                    (true, _) => format!("{}\n", one.title),
+                    _ => String::new(),
+                };
+                parts.push(heading + &one.written(self.format, digits));
+            }
+        }
+        if is_text {
+            parts.push("* best, + second; an interval holds the mean over sequences with 95 %\n".to_owned());
+        }
+        Ok(parts.join("\n"))
     }
-    let _ = write!(text, "{} by sequence\n{}", measure.title(), by_sequence(table, measure));
-    text
-}
 
-/// Trackers by AUC, the best first; those without scores last.
-pub fn ranked(table: &Table) -> Vec<&TrackerScores> {
-    let mut trackers: Vec<&TrackerScores> = table.trackers.iter().collect();
-    let auc = |one: &TrackerScores| one.overall.map_or(f64::NEG_INFINITY, |scores| scores.auc.mean);
-    trackers.sort_by(|a, b| auc(b).total_cmp(&auc(a)));
-    trackers
-}
-
-/// A mean with its spread, if it has one.
-pub fn with_spread(value: Option<Spread>) -> String {
-    match value {
-        None => "-".into(),
-        Some(Spread { mean, deviation: None }) => format!("{mean:.4}"),
-        Some(Spread { mean, deviation: Some(deviation) }) => format!("{mean:.4} ± {deviation:.4}"),
-    }
-}
-
-fn overall(table: &Table) -> TextTable {
-    let headings = ["tracker", "seeds", "sequences"].into_iter();
-    let mut text = TextTable::new(headings.chain(Measure::ALL.map(Measure::title)).chain(["frames/s"]));
-    for one in ranked(table) {
-        let seeds = if one.seeds == [0] { "-".to_owned() } else { one.seeds.len().to_string() };
-        let mut cells = vec![one.tracker.clone(), seeds, one.scored.to_string()];
-        cells.extend(Measure::ALL.map(|measure| with_spread(one.overall.and_then(|s| measure.of(&s)))));
-        cells.push(one.frames_per_second.map_or("-".into(), |speed| format!("{speed:.1}")));
-        text.row(cells);
-    }
-    text
-}
-
-fn by_attribute(table: &Table, measure: Measure) -> TextTable {
-    let trackers = ranked(table);
-    let mut text = TextTable::new(
-        ["attribute", "sequences"].into_iter().chain(trackers.iter().map(|one| one.tracker.as_str())),
-    );
-    for attribute in otb_eval::catalogue::Attribute::ALL {
-        let of =
-            |one: &TrackerScores| one.attributes.iter().find(|scores| scores.attribute == attribute).cloned();
-        let Some(sequences) = trackers.iter().filter_map(|one| of(one)).map(|scores| scores.sequences).max()
-        else {
-            continue;
+    fn digits(&self) -> Digits {
+        let decimals = match (self.digits, self.format, self.percent) {
+            (Some(digits), ..) => digits,
+            (None, TableFormat::Text, false) => 4,
+            (None, TableFormat::Text, true) => 2,
+            (None, _, false) => 3,
+            (None, _, true) => 1,
         };
-        let cells = trackers.iter().map(|one| mean_of(of(one).and_then(|scores| measure.of(&scores.scores))));
-        text.row([attribute.code().to_owned(), sequences.to_string()].into_iter().chain(cells));
+        Digits { decimals, percent: self.percent }
     }
-    text
-}
 
-fn by_sequence(table: &Table, measure: Measure) -> TextTable {
-    let trackers = ranked(table);
-    let mut text =
-        TextTable::new(["sequence"].into_iter().chain(trackers.iter().map(|one| one.tracker.as_str())));
-    for (index, sequence) in table.sequences.iter().enumerate() {
-        let of = |one: &&TrackerScores| one.sequences[index].scores.and_then(|scores| measure.of(&scores));
-        text.row([sequence.clone()].into_iter().chain(trackers.iter().map(|one| mean_of(of(one)))));
+    fn tables_of(
+        &self,
+        kind: TableKind,
+        table: &Table,
+        long_term: Option<&[LongTermScores]>,
+    ) -> Result<Vec<ScoreTable>> {
+        Ok(match kind {
+            TableKind::Overall => vec![tables::overall(table, &self.overall_options(table)?)],
+            TableKind::Certainty => {
+                let options = OverallOptions {
+                    measures: vec![self.measure],
+                    intervals: true,
+                    ..self.overall_options(table)?
+                };
+                let mut one = tables::overall(table, &options);
+                one.title = format!("{}, its 95 % interval over sequences", self.measure.title());
+                vec![one]
+            }
+            TableKind::Attribute => tables::by_attribute(table, self.measure).into_iter().collect(),
+            TableKind::Sequence => vec![tables::by_sequence(table, self.measure)],
+            TableKind::LongTerm => {
+                let how = "--table long-term: add --long-term";
+                let scores = long_term.ok_or_else(|| BadInput(how.into()))?;
+                let all = [tables::long_term(scores), tables::long_term_by_sequence(scores)];
+                // A file of comma-separated values holds one table.
+                let count = if self.format == TableFormat::Csv { 1 } else { 2 };
+                all.into_iter().take(count).collect()
+            }
+        })
     }
-    text
-}
 
-fn mean_of(value: Option<Spread>) -> String {
-    value.map_or("-".into(), |value| format!("{:.4}", value.mean))
+    fn overall_options(&self, table: &Table) -> Result<OverallOptions> {
+        let measures = self.measures.clone().unwrap_or_else(|| Measure::quoted(table.toolkit).to_vec());
+        let against = match &self.against {
+            None => None,
+            Some(name) => {
+                let place = table.trackers.iter().position(|one| one.tracker == *name).ok_or_else(|| {
+                    let there: Vec<&str> = table.trackers.iter().map(|one| one.tracker.as_str()).collect();
+                    BadInput(format!(
+                        "--against: there are no results of the tracker `{name}`, but of: {}",
+                        there.join(", ")
+                    ))
+                })?;
+                Some((place, self.measure))
+            }
+        };
+        Ok(OverallOptions { measures, intervals: self.intervals || self.format == TableFormat::Csv, against })
+    }
 }

@@ -14,7 +14,7 @@ use otb_eval::{
     figures::missing_protocols,
     protocol::Protocol,
     results::{Results, ResultsError},
-    scoring::{ScoreOptions, ScoreProblem, Table, Weight, score},
+    scoring::{LongTermScores, ScoreOptions, ScoreProblem, Table, Weight, has_absence, long_term, score},
     toolkits::{Rules, Toolkit},
 };
 
@@ -47,6 +47,10 @@ pub struct ScoredArgs {
     /// Undo the scaling of sre's scaled runs before comparing, as one of the benchmark's two codes does
     #[arg(long)]
     sre_undo_scale: bool,
+    /// Score how targets are followed that are absent for a while: VOT-LT's F, precision and recall over confidence thresholds;
+    /// plot and report do so unasked where the data has frames without a target
+    #[arg(long)]
+    pub long_term: bool,
     /// Exit with 2 also where results that others made have defects, which are listed and scored as the rules have it:
     /// rows too few or too many, or what the toolkit itself would fail on
     #[arg(long)]
@@ -76,7 +80,7 @@ const NAMED: usize = 3;
 /// Tells what could not be scored, or not as it stands. Many sequences without ground truth, many results that a seed lacks,
 /// and many results of a tracker with the same defect are told in one line.
 pub fn tell<'a>(unscored: impl IntoIterator<Item = &'a ScoreProblem>, problems: &mut Problems) {
-    let mut without_truth = Vec::new();
+    let (mut without_truth, mut first_only) = (Vec::new(), Vec::new());
     let mut missing: BTreeMap<(&str, u64), Vec<&'a ScoreProblem>> = BTreeMap::new();
     let mut alike: BTreeMap<(Weight, &str, String), Vec<&'a ScoreProblem>> = BTreeMap::new();
     let mut others = Vec::new();
@@ -101,6 +105,7 @@ pub fn tell<'a>(unscored: impl IntoIterator<Item = &'a ScoreProblem>, problems: 
                 alike.entry((problem.weight(), tracker, what)).or_default().push(problem);
             }
             ScoreProblem::NoTruth { .. } => without_truth.push(problem),
+            ScoreProblem::FirstOnly { .. } => first_only.push(problem),
             ScoreProblem::Missing { tracker, seed, reason: None, .. } => {
                 missing.entry((tracker, *seed)).or_default().push(problem);
             }
@@ -110,6 +115,11 @@ pub fn tell<'a>(unscored: impl IntoIterator<Item = &'a ScoreProblem>, problems: 
     tell_folded(&without_truth, problems, |named| {
         format!(
             "{named}: no ground truth of them; add their folders with --data, or choose others with --sequences"
+        )
+    });
+    tell_folded(&first_only, problems, |named| {
+        format!(
+            "{named}: only their first boxes are known: the benchmark's server scores them; make what it takes with `otb_eval submit`"
         )
     });
     for ((tracker, seed), group) in missing {
@@ -150,6 +160,10 @@ impl ScoredArgs {
             let how = "--trackers: the two trackers are A and B themselves; leave the flag out";
             return Err(BadInput(how.into()).into());
         }
+        if self.long_term {
+            let how = "--long-term: two trackers are not compared in it; use `otb_eval score --long-term`";
+            return Err(BadInput(how.into()).into());
+        }
         Ok(())
     }
 
@@ -184,6 +198,21 @@ impl ScoredArgs {
         Ok(())
     }
 
+    /// Long-term scores of one-pass results: where they are asked for or, if `unasked`, where the data has frames without a target.
+    pub fn long_term(
+        &self,
+        dataset: &Dataset,
+        results: &Results,
+        toolkit: Toolkit,
+        unasked: bool,
+    ) -> Result<Option<Vec<LongTermScores>>> {
+        let is_wanted = self.long_term || (unasked && has_absence(dataset));
+        if !is_wanted {
+            return Ok(None);
+        }
+        Ok(Some(long_term(dataset, results, &self.options(toolkit, Protocol::Ope)?)))
+    }
+
     /// The toolkit's rules with the options asked for.
     pub fn rules(&self, toolkit: Toolkit) -> Rules {
         let mut rules = toolkit.rules();
@@ -198,6 +227,24 @@ impl ScoredArgs {
         if self.exclude_invalid { rules.with_invalid_frames_excluded() } else { rules }
     }
 
+    /// How to score the results of a protocol under a toolkit's rules.
+    pub fn options(&self, toolkit: Toolkit, protocol: Protocol) -> Result<ScoreOptions> {
+        let rules = self.rules(toolkit);
+        let attributes = match self.attributes.as_deref() {
+            None => rules.attributes(),
+            Some("none") => None,
+            Some(word) => Some(word.parse::<AttributeSource>().context("--attributes")?),
+        };
+        Ok(ScoreOptions {
+            rules,
+            protocol,
+            sequences: self.data.selected()?,
+            attributes,
+            undo_scale: self.sre_undo_scale,
+            accept_lengths: self.missing_rows.is_some(),
+        })
+    }
+
     /// Scores the results of a protocol under a toolkit's rules.
     pub fn score(
         &self,
@@ -206,22 +253,7 @@ impl ScoredArgs {
         toolkit: Toolkit,
         protocol: Protocol,
     ) -> Result<(Table, Vec<ScoreProblem>)> {
-        let rules = self.rules(toolkit);
-        let attributes = match self.attributes.as_deref() {
-            None => rules.attributes(),
-            Some("none") => None,
-            Some(word) => Some(word.parse::<AttributeSource>().context("--attributes")?),
-        };
-        let sequences = self.data.selected()?;
-        let options = ScoreOptions {
-            rules,
-            protocol,
-            sequences,
-            attributes,
-            undo_scale: self.sre_undo_scale,
-            accept_lengths: self.missing_rows.is_some(),
-        };
-        let (table, unscored) = score(dataset, results, &options);
+        let (table, unscored) = score(dataset, results, &self.options(toolkit, protocol)?);
         if table.sequences.is_empty() {
             let path = self.results()?;
             let deeper: Vec<String> =

@@ -4,17 +4,12 @@
 //! 1. the difference of a sequence is the mean of its seeds' differences, seed paired with seed,
 //! 2. the difference is the unweighted mean over sequences, as the benchmark's own means are,
 //! 3. its interval is a percentile bootstrap of two levels: sequences are drawn with replacement, since other
-//!    sequences could have been filmed, and within each its seeds, since other seeds could have been taken.
+//!    sequences could have been filmed, and within each its seeds, since other seeds could have been taken,
+//! 4. whether the sequences' differences lie about zero is asked by Wilcoxon's signed-rank test, too.
 
-use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
 
-/// Resamples of the bootstrap unless something else is asked for.
-pub const RESAMPLES: usize = 10_000;
-
-/// Share of the bootstrap's distribution inside the interval.
-pub const COVERAGE: f64 = 0.95;
+use crate::statistics::{Interval, deviation, intervals, mean, signed_rank};
 
 /// One sequence: a measure of both trackers, a value a seed, in the same order of seeds.
 #[derive(Debug, Clone, PartialEq)]
@@ -40,6 +35,8 @@ pub struct Comparison {
     pub low: f64,
     /// Upper end of the 95 % interval of the difference.
     pub high: f64,
+    /// Two-sided probability of such differences if the trackers were alike, by Wilcoxon's signed-rank test.
+    pub p_value: f64,
     /// Sequences whose mean difference is positive.
     pub first_wins: usize,
     /// Sequences whose mean difference is negative.
@@ -66,7 +63,12 @@ pub struct SequenceDifference {
 impl Comparison {
     /// Whether zero lies outside the interval.
     pub fn is_clear(&self) -> bool {
-        self.low > 0.0 || self.high < 0.0
+        self.interval().is_clear_of_zero()
+    }
+
+    /// The 95 % interval of the difference.
+    pub fn interval(&self) -> Interval {
+        Interval { low: self.low, high: self.high }
     }
 }
 
@@ -81,7 +83,8 @@ pub fn compare(pairs: &[Pair], resamples: usize, seed: u64) -> Option<Comparison
     }
     let sequences: Vec<SequenceDifference> =
         pairs.iter().zip(&differences).map(|(pair, differences)| of_sequence(pair, differences)).collect();
-    let (low, high) = interval(&differences, resamples.max(1), seed);
+    let [Interval { low, high }] = intervals([&differences], resamples, seed)?;
+    let of_sequences: Vec<f64> = sequences.iter().map(|one| one.difference).collect();
     let column = |value: fn(&SequenceDifference) -> f64| mean(sequences.iter().map(value));
     Some(Comparison {
         first: column(|one| one.first),
@@ -89,6 +92,7 @@ pub fn compare(pairs: &[Pair], resamples: usize, seed: u64) -> Option<Comparison
         difference: column(|one| one.difference),
         low,
         high,
+        p_value: signed_rank(&of_sequences),
         first_wins: sequences.iter().filter(|one| one.difference > 0.0).count(),
         second_wins: sequences.iter().filter(|one| one.difference < 0.0).count(),
         sequences,
@@ -104,46 +108,6 @@ fn of_sequence(pair: &Pair, differences: &[f64]) -> SequenceDifference {
         difference: mean(differences.iter().copied()),
         deviation: deviation(differences),
     }
-}
-
-/// Step 3.
-fn interval(differences: &[Vec<f64>], resamples: usize, seed: u64) -> (f64, f64) {
-    let mut random = ChaCha8Rng::seed_from_u64(seed);
-    let mut means: Vec<f64> = (0..resamples).map(|_| resampled_mean(differences, &mut random)).collect();
-    means.sort_by(f64::total_cmp);
-    let tail = (1.0 - COVERAGE) / 2.0;
-    (quantile(&means, tail), quantile(&means, 1.0 - tail))
-}
-
-fn resampled_mean(differences: &[Vec<f64>], random: &mut ChaCha8Rng) -> f64 {
-    mean((0..differences.len()).map(|_| {
-        let seeds = &differences[random.random_range(0..differences.len())];
-        let drawn: f64 = (0..seeds.len()).map(|_| seeds[random.random_range(0..seeds.len())]).sum();
-        drawn / seeds.len() as f64
-    }))
-}
-
-/// Interpolated between neighbours; `sorted` is not empty.
-fn quantile(sorted: &[f64], share: f64) -> f64 {
-    let position = share * (sorted.len() - 1) as f64;
-    let (below, above) = (sorted[position.floor() as usize], sorted[position.ceil() as usize]);
-    below + position.fract() * (above - below)
-}
-
-/// The mean; 0 of nothing.
-pub fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
-    let count = values.len().max(1);
-    values.sum::<f64>() / count as f64
-}
-
-/// The sample standard deviation; `None` of fewer than two values.
-pub fn deviation(values: &[f64]) -> Option<f64> {
-    if values.len() < 2 {
-        return None;
-    }
-    let mean = mean(values.iter().copied());
-    let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
-    Some((squares / (values.len() - 1) as f64).sqrt())
 }
 
 #[cfg(test)]
@@ -178,17 +142,6 @@ mod tests {
         let mixed: Vec<Pair> =
             (0..6).map(|i| pair("s", &[0.5], &[if i % 2 == 0 { 0.7 } else { 0.3 }])).collect();
         assert!(!compare(&mixed, 500, 1).unwrap().is_clear());
-    }
-
-    #[test]
-    fn the_interval_of_one_level_is_that_of_the_normal_mean() {
-        // With one seed a sequence, the bootstrap's standard error of a mean is the known s / sqrt(n).
-        let pairs: Vec<Pair> = (0..100).map(|i| pair("s", &[f64::from(i) / 100.0], &[0.0])).collect();
-        let comparison = compare(&pairs, 20_000, 3).unwrap();
-        let population: f64 = (0..100).map(|i| (f64::from(i) / 100.0 - 0.495).powi(2)).sum::<f64>() / 100.0;
-        let half = 1.96 * (population / 100.0).sqrt();
-        assert!((comparison.high - comparison.low - 2.0 * half).abs() < 0.005);
-        assert_eq!(comparison, compare(&pairs, 20_000, 3).unwrap());
     }
 
     #[test]

@@ -35,6 +35,8 @@ pub enum Layout {
     Pysot,
     /// `OTB2015/TRACKER/SEQ.txt`, commas, with `times/SEQ_time.txt`.
     Got10k,
+    /// `TRACKER/SEQ/SEQ_00K.txt`, as the GOT-10k toolkit has them for GOT-10k itself, with `SEQ/SEQ_time.txt`.
+    Got10kSet,
     /// `TRACKER/PARAM[_RRR]/SEQ.txt`, tabs, with `SEQ_time.txt` beside.
     Pytracking,
     /// `OPE/TRACKER/SEQ.json`, and `TRE`, `SRE`: a list of segments with frames per second.
@@ -43,8 +45,8 @@ pub enum Layout {
 
 impl Layout {
     /// All of them.
-    pub const ALL: [Self; 6] =
-        [Self::Run, Self::Flat, Self::Pysot, Self::Got10k, Self::Pytracking, Self::Jwlim];
+    pub const ALL: [Self; 7] =
+        [Self::Run, Self::Flat, Self::Pysot, Self::Got10k, Self::Got10kSet, Self::Pytracking, Self::Jwlim];
 
     /// The name in flags.
     pub const fn name(self) -> &'static str {
@@ -53,6 +55,7 @@ impl Layout {
             Self::Flat => "flat",
             Self::Pysot => "pysot",
             Self::Got10k => "got10k",
+            Self::Got10kSet => "got10k-set",
             Self::Pytracking => "pytracking",
             Self::Jwlim => "jwlim",
         }
@@ -69,6 +72,7 @@ impl Layout {
             Self::Run => "PROTOCOL/TRACKER/seed_S/SEQ.txt",
             Self::Flat | Self::Pysot => "TRACKER/SEQ.txt",
             Self::Got10k => "OTB2015/TRACKER/SEQ.txt",
+            Self::Got10kSet => "TRACKER/SEQ/SEQ_001.txt",
             Self::Pytracking => "TRACKER/PARAM/SEQ.txt",
             Self::Jwlim => "OPE/TRACKER/SEQ.json",
         }

@@ -47,7 +47,7 @@ pub(super) fn read(
                 }
             }
         }
-        Layout::Run | Layout::Flat | Layout::Pysot | Layout::Jwlim => {
+        Layout::Run | Layout::Flat | Layout::Pysot | Layout::Jwlim | Layout::Got10kSet => {
             for protocol in Results::protocols(path)? {
                 tracks.extend(of_protocol(path, protocol, problems)?);
             }
@@ -136,6 +136,9 @@ fn split(stem: &str, protocol: Protocol) -> (String, Option<String>) {
 
 pub(super) fn files(layout: Layout, tracks: &[Track]) -> Vec<OutputFile> {
     let mut files = Vec::new();
+    if layout == Layout::Got10kSet {
+        return repetitions(tracks);
+    }
     for track in tracks {
         let tracker_folder = tracker_folder(layout, track, tracks);
         let folder = match layout {
@@ -174,8 +177,53 @@ fn tracker_folder(layout: Layout, track: &Track, tracks: &[Track]) -> PathBuf {
             PathBuf::from(&track.tracker).join(format!("{DEFAULT_PARAM}_{:03}", track.seed))
         }
         Layout::Pytracking => PathBuf::from(&track.tracker).join(DEFAULT_PARAM),
+        Layout::Got10kSet => PathBuf::from(&track.tracker),
         Layout::Flat | Layout::Pysot | Layout::Jwlim => PathBuf::from(name_with_seed(track, tracks)),
     }
+}
+
+/// `TRACKER/SEQ/SEQ_00K.txt`, K counting the seeds, and the times of all of them as columns of one file.
+fn repetitions(tracks: &[Track]) -> Vec<OutputFile> {
+    let mut groups: Vec<Vec<&Track>> = Vec::new();
+    for track in tracks {
+        let is_same = |group: &&mut Vec<&Track>| {
+            (&group[0].tracker, &group[0].sequence) == (&track.tracker, &track.sequence)
+        };
+        match groups.iter_mut().find(is_same) {
+            Some(group) => group.push(track),
+            None => groups.push(vec![track]),
+        }
+    }
+    let mut files = Vec::new();
+    for mut group in groups {
+        group.sort_by_key(|track| track.seed);
+        let (tracker_folder, sequence) = (PathBuf::from(&group[0].tracker), &group[0].sequence);
+        let folder = tracker_folder.join(sequence);
+        let file = |name: String, text: String, has_boxes: bool| OutputFile {
+            tracker_folder: tracker_folder.clone(),
+            path: folder.join(name),
+            text,
+            has_boxes,
+        };
+        for (place, track) in group.iter().enumerate() {
+            files.push(file(format!("{sequence}_{:03}.txt", place + 1), rows_of(track, ','), true));
+        }
+        let columns: Option<Vec<&Vec<f64>>> = group.iter().map(|track| track.seconds.as_ref()).collect();
+        if let Some(columns) =
+            columns.filter(|columns| columns.iter().all(|one| one.len() == columns[0].len()))
+        {
+            let line = |frame: usize| {
+                let seconds: Vec<String> = columns.iter().map(|one| format!("{:.8}", one[frame])).collect();
+                seconds.join(",") + "\n"
+            };
+            files.push(file(
+                format!("{sequence}_time.txt"),
+                (0..columns[0].len()).map(line).collect(),
+                false,
+            ));
+        }
+    }
+    files
 }
 
 fn rows_of(track: &Track, separator: char) -> String {

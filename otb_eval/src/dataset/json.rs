@@ -5,7 +5,7 @@ use std::{collections::BTreeMap, fs, path::Path};
 use infopart::geometry::Rect;
 use serde::Deserialize;
 
-use super::{DatasetError, Target, folder::cut};
+use super::{Annotations, DatasetError, Target, folder::cut};
 use crate::catalogue;
 
 #[derive(Deserialize)]
@@ -35,5 +35,6 @@ fn target(name: String, entry: &Entry) -> Target {
         truth,
         hidden: Vec::new(),
         frames: None,
+        annotations: Annotations::default(),
     }
 }

@@ -1,10 +1,11 @@
-//! The truth that results are compared with: OTB folders on disk, or the boxes of a JSON file.
+//! The truth that results are compared with: sequences on disk, of OTB or another benchmark, or the boxes of a JSON file.
 //!
 //! Boxes stay as they stand in the files, the first pixel being 1 and odd rows among them: no toolkit converts
 //! them, and each has rules of its own for rows that are no boxes.
 
 mod folder;
 mod json;
+mod roots;
 
 use std::{
     collections::HashSet,
@@ -12,7 +13,10 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use infopart::{geometry::Rect, sequence::SequenceError};
+use infopart::{
+    geometry::{Origin, Rect},
+    sequence::{Benchmark, PolygonBox, SequenceError},
+};
 use thiserror::Error;
 
 use crate::{
@@ -32,17 +36,38 @@ pub struct Target {
     pub hidden: Vec<RangeInclusive<usize>>,
     /// Where its frames are; `None` if only its boxes are known.
     pub frames: Option<FrameFolder>,
+    /// What its benchmark says of its frames besides the boxes.
+    pub annotations: Annotations,
+}
+
+/// What a benchmark says of a target's frames besides its boxes.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Annotations {
+    /// The benchmark; `None` for OTB's layout and JSON files.
+    pub benchmark: Option<Benchmark>,
+    /// Whether the target is absent, for each row; empty if nothing of the kind is said.
+    pub absent: Vec<bool>,
+    /// GOT-10k's visible eighths, for each row; empty elsewhere.
+    pub cover: Vec<u8>,
+    /// Width and height of the frames, where the benchmark says them.
+    pub resolution: Option<(usize, usize)>,
+    /// Whether only the first box is known, since a server keeps the others: nothing can be scored here.
+    pub first_only: bool,
 }
 
 /// Where the frames of a target are.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FrameFolder {
-    /// The OTB folder.
+    /// The sequence's folder, or the file of its ground truth where that lies apart: what [`infopart::sequence::open`] takes.
     pub path: PathBuf,
-    /// Which target of the folder, if its files are numbered.
+    /// Which target of the folder, if they are numbered.
     pub target: Option<usize>,
     /// The first frame of the truth, counted from 1 among the frames that [`infopart::sequence::open`] delivers.
     pub first_frame: usize,
+    /// The number of the first pixel in its boxes.
+    pub origin: Origin,
+    /// The file of its ground truth.
+    pub ground_truth: PathBuf,
 }
 
 /// Targets in the order of their discovery.
@@ -57,13 +82,13 @@ pub struct Dataset {
 #[non_exhaustive]
 pub enum DatasetError {
     /// Nothing at a path.
-    #[error("{path}: no such file or folder; give a folder of OTB sequences, one sequence, or OTB100.json", path = path.display())]
+    #[error("{path}: no such file or folder; give a data set's folder, one sequence, or OTB100.json", path = path.display())]
     Missing {
         /// The path as given.
         path: PathBuf,
     },
     /// A folder without sequences.
-    #[error("{path}: no OTB sequence there; each is a folder with img/ and groundtruth_rect.txt{}", deeper_ones(deeper), path = path.display())]
+    #[error("{path}: no sequence there that is laid out as OTB's (img/ and groundtruth_rect.txt), UAV123's, LaSOT's, GOT-10k's, TrackingNet's, NfS's, VOT's, TLD's or TC128's are{}", deeper_ones(deeper), path = path.display())]
     NoSequences {
         /// The path as given.
         path: PathBuf,
@@ -86,6 +111,14 @@ pub enum DatasetError {
         /// What is wrong, and what to do.
         source: SequenceError,
     },
+    /// A list that names sequences which are not there.
+    #[error("{list}: {} of the sequences that it names are not there: {}; add them, or choose others with --sequences", names.len(), few(names), list = list.display())]
+    Unlisted {
+        /// The list.
+        list: PathBuf,
+        /// What is not there.
+        names: Vec<String>,
+    },
     /// A JSON file that is not a list of sequences.
     #[error("{path}: {problem}; give a JSON object of NAME: {{\"gt_rect\": [[x,y,w,h], ...]}}, as OTB100.json is", path = path.display())]
     Json {
@@ -104,6 +137,16 @@ pub enum DatasetError {
     },
 }
 
+/// The first few names, and how many more there are.
+fn few(names: &[String]) -> String {
+    const NAMED: usize = 3;
+    let named = names.iter().take(NAMED).map(String::as_str).collect::<Vec<_>>().join(", ");
+    match names.len().saturating_sub(NAMED) {
+        0 => named,
+        more => format!("{named} and {more} more"),
+    }
+}
+
 fn deeper_ones(folders: &[PathBuf]) -> String {
     let names: Vec<String> = folders.iter().map(|folder| folder.display().to_string()).collect();
     if names.is_empty() {
@@ -114,15 +157,26 @@ fn deeper_ones(folders: &[PathBuf]) -> String {
 }
 
 impl Dataset {
-    /// Reads folders of OTB sequences, single OTB folders and JSON files of boxes. Sequences that cannot be read are
-    /// left out and told beside the others.
+    /// Reads folders of sequences, single ones and JSON files of boxes; VOT's polygons become boxes by their smallest and largest
+    /// coordinates. Sequences that cannot be read are left out and told beside the others.
     ///
     /// # Errors
     /// [`DatasetError`] if a path itself is of no use.
     pub fn open(paths: &[PathBuf]) -> Result<(Self, Vec<DatasetError>), DatasetError> {
+        Self::open_with(paths, PolygonBox::default())
+    }
+
+    /// As [`open`](Self::open), with another rule for VOT's polygons.
+    ///
+    /// # Errors
+    /// [`DatasetError`] if a path itself is of no use.
+    pub fn open_with(
+        paths: &[PathBuf],
+        polygons: PolygonBox,
+    ) -> Result<(Self, Vec<DatasetError>), DatasetError> {
         let (mut dataset, mut problems, mut names) = (Self::default(), Vec::new(), HashSet::new());
         for path in paths {
-            for target in read(path, &mut problems)? {
+            for target in read(path, polygons, &mut problems)? {
                 if names.insert(target.name.clone()) {
                     dataset.targets.push(target);
                 } else {
@@ -137,6 +191,12 @@ impl Dataset {
     /// With these lists of hidden frames instead of the benchmark's.
     pub fn hide(&mut self, lists: &HiddenFrames) {
         self.targets.iter_mut().for_each(|target| target.hidden = lists.rows(&target.name));
+    }
+
+    /// The benchmark that all targets are of, if they are of one that has rules of its own.
+    pub fn benchmark(&self) -> Option<Benchmark> {
+        let first = self.targets.first()?.annotations.benchmark?;
+        self.targets.iter().all(|target| target.annotations.benchmark == Some(first)).then_some(first)
     }
 
     /// The target of that name.
@@ -166,9 +226,14 @@ impl Target {
     }
 }
 
-fn read(path: &Path, problems: &mut Vec<DatasetError>) -> Result<Vec<Target>, DatasetError> {
-    if path.is_dir() {
-        folder::read(path, problems)
+fn read(
+    path: &Path,
+    polygons: PolygonBox,
+    problems: &mut Vec<DatasetError>,
+) -> Result<Vec<Target>, DatasetError> {
+    let is_annotation = path.extension().is_some_and(|extension| extension == "txt");
+    if path.is_dir() || (is_annotation && path.is_file()) {
+        folder::read(path, polygons, problems)
     } else if path.is_file() {
         json::read(path)
     } else {

@@ -66,7 +66,7 @@ fn what_is_not_there_or_twice_is_named() {
     let root = tempfile::tempdir().unwrap();
     let refused = |path: PathBuf| Dataset::open(&[path]).unwrap_err().to_string();
     assert!(refused(root.path().join("nowhere")).contains("nowhere: no such file or folder"));
-    assert!(refused(root.path().to_owned()).contains("no OTB sequence there"));
+    assert!(refused(root.path().to_owned()).contains("no sequence there that is laid out"));
     sequence(root.path(), "Walk", &[("groundtruth_rect.txt", "1,2,3,4\n")]);
     let (dataset, problems) = Dataset::open(&[root.path().to_owned(), root.path().join("Walk")]).unwrap();
     assert_eq!(dataset.targets.len(), 1);

@@ -6,7 +6,7 @@ use std::{
     time::Instant,
 };
 
-use infopart::{geometry::Origin, sequence::otb_images};
+use infopart::sequence::otb_images;
 
 use super::{
     ExternalTracker,
@@ -39,7 +39,8 @@ fn converse(
 ) -> Result<Recording, Trouble> {
     let mut session = Session::start(&tracker.command, &tracker.options, job.seed, called_off)?;
     session.introduction()?;
-    let first_box = Origin::One.to_frame(job.segment.first_box);
+    let origin = job.folder.origin;
+    let first_box = origin.to_frame(job.segment.first_box);
     let mut rows = vec![job.segment.first_box];
     let (mut round_trips, mut own) = (Vec::with_capacity(images.len()), Vec::with_capacity(images.len()));
     for (number, image) in images.iter().enumerate() {
@@ -53,12 +54,14 @@ fn converse(
         own.extend(state.own_seconds);
         // The first row is the box given, whatever the answer.
         if number > 0 {
-            rows.push(Origin::One.from_frame(state.box_in_frame));
+            rows.push(origin.from_frame(state.box_in_frame));
         }
     }
     session.quit();
     let tells = own.len() == images.len();
     Ok(Recording {
+        confidences: Vec::new(),
+        origin,
         rows,
         seconds: if tells { own } else { round_trips.clone() },
         round_trips: Some(round_trips),

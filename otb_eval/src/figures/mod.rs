@@ -2,16 +2,18 @@
 
 mod page;
 mod strips;
+mod timelines;
 
 use crate::{
     catalogue::Attribute,
-    plots::{Curve, Plot, normalised_precision_plot, precision_plot, success_plot},
-    scoring::{Table, TrackerScores},
+    plots::{Curve, Plot, normalised_precision_plot, precision_plot, precision_recall_plot, success_plot},
+    scoring::{LongTermScores, Table, TrackerScores},
     toolkits::Curves,
 };
 
 pub use page::{PageOptions, missing_protocols, page};
 pub use strips::{StripProblem, strips};
+pub use timelines::timelines;
 
 /// A plot and the name of its files.
 #[derive(Debug, Clone, PartialEq)]
@@ -47,6 +49,30 @@ pub fn plots(table: &Table) -> Vec<NamedPlot> {
         }
     }
     named
+}
+
+/// Precision over recall of one-pass results, ranked by F; `None` without scores. A tracker that tells no confidence has one point,
+/// which is drawn as a short dash.
+pub fn long_term_plot(scores: &[LongTermScores]) -> Option<NamedPlot> {
+    const HALF_A_DASH: f64 = 0.008;
+    let curve = |(style, one): (usize, &LongTermScores)| {
+        let (mut x, mut y): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
+        for point in &one.curve {
+            // Where recall stands still, the first of the points is the most precise.
+            if x.last().is_none_or(|last| point.recall > *last) {
+                x.push(point.recall);
+                y.push(point.precision);
+            }
+        }
+        if let ([recall], [precision]) = (&x[..], &y[..]) {
+            (x, y) = (vec![recall - HALF_A_DASH, recall + HALF_A_DASH], vec![*precision; 2]);
+        }
+        let score = one.f?.mean;
+        (!x.is_empty()).then(|| Curve { label: one.tracker.clone(), style, score, x, y })
+    };
+    let curves: Vec<Curve> = scores.iter().enumerate().filter_map(curve).collect();
+    let plot = precision_recall_plot("Precision and recall of OPE, long term", curves);
+    (!plot.curves.is_empty()).then(|| NamedPlot { name: "long_term_ope".to_owned(), plot })
 }
 
 /// How many scored sequences have an attribute; `None` if no tracker has scores for it.

@@ -8,10 +8,10 @@ use crate::{
     plots::Plot,
     report::{
         AttributeChart, AttributeScores, Failure, OverallRow, OverallTable, PlotGroup, Report, Score,
-        SequenceRow, SequenceTable, Strip, Tracker,
+        SequenceRow, SequenceTable, Strip, Tested, Timeline, Tracker,
     },
     results::{Results, TrackerResults},
-    scoring::{Measure, Spread, Table, TrackerScores},
+    scoring::{LongTermScores, Measure, Spread, Table, TrackerScores, against, certainty},
 };
 
 /// What the page says besides scores.
@@ -21,10 +21,16 @@ pub struct PageOptions {
     pub title: String,
     /// The commands that make the results and the page again.
     pub commands: Vec<String>,
-    /// What could not be scored.
+    /// What scoring met.
     pub problems: Vec<String>,
+    /// Each sequence over time.
+    pub timelines: Vec<Timeline>,
+    /// The tracker that all others are tested against, by its place.
+    pub against: Option<usize>,
     /// Frames with boxes.
     pub strips: Vec<Strip>,
+    /// Long-term scores of all trackers in the tables' order; may be empty.
+    pub long_term: Vec<LongTermScores>,
 }
 
 /// The page of some protocols' scores, all of the same trackers in the same order, some of them without results in a
@@ -32,8 +38,12 @@ pub struct PageOptions {
 pub fn page(tables: &[(Results, Table)], options: PageOptions) -> Report {
     let Some((_, first)) = tables.first() else { return Report::default() };
     let missing = missing_protocols(tables);
-    let failures = failures(tables, options.problems);
+    let failures = failures(tables);
+    let against = options.against;
     let (versions, trackers) = (versions(tables), trackers(tables));
+    let long_term = super::long_term_plot(&options.long_term);
+    let long_term =
+        long_term.map(|named| PlotGroup { title: "long term".to_owned(), plots: vec![named.plot] });
     let tables: Vec<&Table> = tables.iter().map(|(_, table)| table).collect();
     Report {
         title: options.title,
@@ -42,12 +52,14 @@ pub fn page(tables: &[(Results, Table)], options: PageOptions) -> Report {
         versions,
         trackers,
         commands: options.commands,
-        overall: tables.iter().map(|table| overall(table)).collect(),
-        plots: tables.iter().flat_map(|table| groups(table)).collect(),
+        overall: tables.iter().map(|table| overall(table, against)).collect(),
+        plots: tables.iter().flat_map(|table| groups(table)).chain(long_term).collect(),
         attributes: tables.iter().flat_map(|table| chart(table)).collect(),
         sequences: tables.iter().flat_map(|table| by_sequence(table)).collect(),
         strips: options.strips,
+        timelines: options.timelines,
         failures,
+        scoring: options.problems,
         notes: missing.into_iter().chain(notes(first)).collect(),
     }
 }
@@ -107,20 +119,35 @@ fn tracker(results: &TrackerResults) -> Tracker {
     Tracker { label: results.name.clone(), parameters: parameters.collect() }
 }
 
-fn overall(table: &Table) -> OverallTable {
-    let score = |spread: Spread| Score { mean: spread.mean, spread: spread.deviation };
+fn overall(table: &Table, chosen: Option<usize>) -> OverallTable {
+    let measures = Measure::quoted(table.toolkit);
+    let intervals = certainty(table);
+    let chosen = chosen.and_then(|place| Some((place, &table.trackers.get(place)?.tracker)));
+    let tested = chosen.map(|(place, _)| against(table, place, measures[0]));
     let row = |(place, one): (usize, &TrackerScores)| {
         let scores = one.overall?;
+        let score = |measure: &Measure| {
+            let spread: Spread = measure.of(&scores)?;
+            let interval = intervals[place][*measure as usize];
+            Some(Score { mean: spread.mean, spread: spread.deviation, interval })
+        };
+        let against = tested.as_ref().and_then(|tested| tested[place].as_ref());
         Some(OverallRow {
             tracker: place,
             seeds: one.seeds.len(),
-            scores: Measure::ALL.map(|measure| measure.of(&scores).map(score)).to_vec(),
+            scores: measures.iter().map(score).collect(),
             fps: one.frames_per_second,
+            against: against.map(|one| Tested {
+                difference: one.comparison.difference,
+                interval: one.comparison.interval(),
+                p: one.corrected_p,
+            }),
         })
     };
     OverallTable {
         title: format!("{}, rules of {}", table.protocol.title(), table.toolkit),
-        metrics: Measure::ALL.map(|measure| measure.title().to_owned()).to_vec(),
+        metrics: measures.iter().map(|measure| measure.title().to_owned()).collect(),
+        against: chosen.map(|(_, name)| format!("{} less that of {name}", measures[0].title())),
         rows: table.trackers.iter().enumerate().filter_map(row).collect(),
     }
 }
@@ -170,10 +197,10 @@ fn by_sequence(table: &Table) -> Vec<SequenceTable> {
     };
     let has_values =
         |table: &SequenceTable| table.rows.iter().any(|row| row.scores.iter().any(Option::is_some));
-    Measure::ALL.into_iter().map(of).filter(has_values).collect()
+    Measure::quoted(table.toolkit).iter().copied().map(of).filter(has_values).collect()
 }
 
-fn failures(tables: &[(Results, Table)], problems: Vec<String>) -> Vec<Failure> {
+fn failures(tables: &[(Results, Table)]) -> Vec<Failure> {
     let mut failures = Vec::new();
     for (results, table) in tables {
         for tracker in &results.trackers {
@@ -185,7 +212,6 @@ fn failures(tables: &[(Results, Table)], problems: Vec<String>) -> Vec<Failure> 
             }
         }
     }
-    failures.extend(problems.into_iter().map(|reason| Failure { job: "scoring".to_owned(), reason }));
     failures
 }
 
@@ -193,6 +219,6 @@ fn notes(table: &Table) -> Vec<String> {
     let rules = table.toolkit.rules().explain();
     let mut notes: Vec<String> =
         rules.lines().map(|line| line.split_whitespace().collect::<Vec<_>>().join(" ")).collect();
-    notes.push("A score is the mean over seeds; ± is the standard deviation over them. Frames per second are as the line frames/s says, without decoding.".to_owned());
+    notes.push("A score is the mean over seeds; ± is the standard deviation over them, [ ] the 95 % interval over sequences. A difference is paired by sequence, its p is by Wilcoxon's signed-rank test with Holm's correction for the trackers compared. Frames per second are as the line frames/s says, without decoding.".to_owned());
     notes
 }

@@ -5,11 +5,12 @@ use std::io::Cursor;
 use image::{RgbImage, codecs::jpeg::JpegEncoder, imageops};
 use infopart::{
     frame::PixelFormat,
-    geometry::{Origin, Rect},
+    geometry::Rect,
     sequence::{OpenOptions, SequenceError, SourceFrame, open},
 };
 use thiserror::Error;
 
+use super::timelines::{boxes_of, telling};
 use crate::{
     dataset::{Dataset, FrameFolder, Target},
     report::{Strip, StripFrame},
@@ -18,8 +19,6 @@ use crate::{
     words::of_sequence,
 };
 
-/// Frames of a sequence that are shown.
-const FRAMES: usize = 6;
 /// Pictures are scaled down to this width, pixels.
 const WIDTH: u32 = 360;
 const JPEG_QUALITY: u8 = 78;
@@ -46,14 +45,19 @@ pub enum StripProblem {
     },
 }
 
-/// A strip for each sequence of the table whose frames are there: six frames from the second to the last, with the
+/// A strip for each sequence of the table whose frames are there: `count` frames, those first in which trackers begin to fail, with the
 /// boxes of each tracker's first seed. What cannot be shown is told beside.
-pub fn strips(dataset: &Dataset, results: &Results, table: &Table) -> (Vec<Strip>, Vec<StripProblem>) {
+pub fn strips(
+    dataset: &Dataset,
+    results: &Results,
+    table: &Table,
+    count: usize,
+) -> (Vec<Strip>, Vec<StripProblem>) {
     let (mut strips, mut problems) = (Vec::new(), Vec::new());
     for name in &table.sequences {
         let Some(target) = dataset.target(name) else { continue };
         let Some(folder) = &target.frames else { continue };
-        match strip(target, folder, results) {
+        match strip(target, folder, results, count) {
             Ok(strip) => strips.push(strip),
             Err(problem) => problems.push(problem),
         }
@@ -61,19 +65,15 @@ pub fn strips(dataset: &Dataset, results: &Results, table: &Table) -> (Vec<Strip
     (strips, problems)
 }
 
-fn strip(target: &Target, folder: &FrameFolder, results: &Results) -> Result<Strip, StripProblem> {
-    let rows: Vec<Vec<Rect>> = results
-        .trackers
-        .iter()
-        .map(|tracker| {
-            let first = tracker.seeds.first().and_then(|seed| seed.read(&target.name, None));
-            let mut rows = first.and_then(Result::ok).map(|file| file.rows).unwrap_or_default();
-            target.align(&mut rows);
-            rows
-        })
-        .collect();
+fn strip(
+    target: &Target,
+    folder: &FrameFolder,
+    results: &Results,
+    count: usize,
+) -> Result<Strip, StripProblem> {
+    let rows = boxes_of(target, results);
     let mut frames = Vec::new();
-    for index in shown(target.truth.len()) {
+    for index in telling(target, &rows, count) {
         let sequence = || target.name.clone();
         let Some(frame) = frame_at(folder, index)
             .map_err(|source| StripProblem::Frames { sequence: sequence(), source })?
@@ -83,7 +83,7 @@ fn strip(target: &Target, folder: &FrameFolder, results: &Results) -> Result<Str
         let jpeg =
             jpeg_of(&frame).map_err(|source| StripProblem::Picture { sequence: sequence(), source })?;
         let in_frame =
-            |row: Option<&Rect>| row.filter(|row| row.is_proper()).map(|row| Origin::One.to_frame(*row));
+            |row: Option<&Rect>| row.filter(|row| row.is_proper()).map(|row| folder.origin.to_frame(*row));
         frames.push(StripFrame {
             number: index + 1,
             jpeg,
@@ -94,13 +94,6 @@ fn strip(target: &Target, folder: &FrameFolder, results: &Results) -> Result<Str
         });
     }
     Ok(Strip { sequence: target.name.clone(), frames })
-}
-
-/// Rows to show, evenly from the second to the last.
-fn shown(rows: usize) -> Vec<usize> {
-    let mut shown: Vec<usize> = (1..=FRAMES).map(|place| place * rows.saturating_sub(1) / FRAMES).collect();
-    shown.dedup();
-    shown
 }
 
 fn frame_at(folder: &FrameFolder, row: usize) -> Result<Option<SourceFrame>, SequenceError> {
@@ -130,17 +123,4 @@ fn jpeg_of(frame: &SourceFrame) -> Result<Vec<u8>, image::ImageError> {
     let mut bytes = Cursor::new(Vec::new());
     JpegEncoder::new_with_quality(&mut bytes, JPEG_QUALITY).encode_image(&scaled)?;
     Ok(bytes.into_inner())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn shown_frames_are_even_and_end_with_the_last() {
-        assert_eq!(shown(121), [20, 40, 60, 80, 100, 120]);
-        assert_eq!(shown(3), [0, 1, 2]);
-        assert_eq!(shown(1), [0]);
-        assert_eq!(shown(0), [0]);
-    }
 }

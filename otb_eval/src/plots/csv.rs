@@ -31,6 +31,14 @@ pub fn curves_csv(curves: &[Curve]) -> Result<String, PlotError> {
     Ok(csv)
 }
 
+/// Curves of different thresholds as CSV: a row a point, with the tracker, x and y.
+pub fn points_csv(curves: &[Curve]) -> String {
+    let point = |curve: &Curve, (x, y): (&f64, &f64)| format!("{},{x},{y}\n", quoted(&curve.label));
+    let of_curve =
+        |curve: &Curve| curve.x.iter().zip(&curve.y).map(|xy| point(curve, xy)).collect::<String>();
+    "tracker,x,y\n".to_owned() + &curves.iter().map(of_curve).collect::<String>()
+}
+
 /// A field in quotes if it needs them, the quotes in it doubled.
 fn quoted(field: &str) -> String {
     if field.contains([',', '"', '\n', '\r']) {

@@ -1,7 +1,7 @@
 //! Draws a plot in layers, on any backend.
 //!
 //! 1. Background, grid and the mark of the threshold that scores are read at.
-//! 2. Curves, the best ranked last, so that it lies on top.
+//! 2. Curves, the best ranked last, so that it lies on top, or the highlighted one.
 //! 3. Axes, title and labels.
 //! 4. The legend, a row a curve.
 
@@ -16,11 +16,8 @@ use plotters::{
 use super::{
     Plot, PlotError, Style,
     layout::{HEIGHT, Layout, WIDTH, ticks},
-    style::{Rgb, cut},
+    style::{FONTS, HIGHLIGHT, Rgb, cut, grey},
 };
-
-/// What the texts of an SVG ask for. The font that the program carries is registered under the same name.
-pub(super) const FONTS: &str = "Ubuntu, Segoe UI, Helvetica, Arial, sans-serif";
 
 const WHITE_PAPER: Rgb = (0xff, 0xff, 0xff);
 const GRID: Rgb = (0xe3, 0xe3, 0xe3);
@@ -28,6 +25,7 @@ const MARK: Rgb = (0x99, 0x99, 0x99);
 const INK: Rgb = (0x22, 0x22, 0x22);
 
 const CURVE_WIDTH: f64 = 2.6;
+const HIGHLIGHTED_WIDTH: f64 = 4.2;
 /// The library takes a height of letters that is this much more than the size that SVG calls for.
 const LETTERS_PER_SIZE: f64 = 1.24;
 
@@ -47,7 +45,10 @@ pub(super) enum Layer {
 pub(super) fn layers(plot: &Plot, layout: &Layout) -> Vec<Layer> {
     let ranking = plot.ranking();
     let mut layers = vec![Layer::Background, Layer::Grid, Layer::Mark];
-    layers.extend(ranking.iter().rev().map(|&curve| Layer::Curve(curve)));
+    let is_in_front = |curve: usize| layout.highlight == Some(curve);
+    layers
+        .extend(ranking.iter().rev().filter(|curve| !is_in_front(**curve)).map(|&curve| Layer::Curve(curve)));
+    layers.extend(layout.highlight.map(Layer::Curve));
     layers.push(Layer::Axes);
     if layout.legend.is_some() {
         layers.push(Layer::LegendBox);
@@ -77,6 +78,31 @@ pub(super) struct Canvas<'a, B: DrawingBackend> {
 
 type Point = (f64, f64);
 
+/// How a curve is drawn.
+pub(super) struct Pen {
+    colour: Rgb,
+    width: f64,
+    /// Lengths of dash, gap, dash, ...; none for a solid line.
+    pub(super) dashes: &'static [f64],
+}
+
+impl Pen {
+    /// In the tracker's own style; where one is highlighted, that one alone in colour.
+    pub(super) fn of(plot: &Plot, layout: &Layout, curve: usize) -> Self {
+        let style = Style::of(plot.curves[curve].style);
+        match layout.highlight {
+            None => Self { colour: style.on_light(), width: CURVE_WIDTH, dashes: style.dashes() },
+            Some(highlighted) if highlighted == curve => {
+                Self { colour: HIGHLIGHT, width: HIGHLIGHTED_WIDTH, dashes: &[] }
+            }
+            Some(_) => {
+                let rank = plot.ranking().iter().position(|one| *one == curve).unwrap_or_default();
+                Self { colour: grey(rank, plot.curves.len()), width: CURVE_WIDTH, dashes: style.dashes() }
+            }
+        }
+    }
+}
+
 impl<B: DrawingBackend> Canvas<'_, B> {
     /// Draws one layer of a plot.
     pub(super) fn layer(&self, plot: &Plot, layout: &Layout, layer: Layer) -> Result<(), PlotError> {
@@ -86,7 +112,7 @@ impl<B: DrawingBackend> Canvas<'_, B> {
             Layer::Mark => self.mark(plot, layout),
             Layer::Curve(curve) => {
                 let points = plot.points(layout.area, &plot.curves[curve]);
-                self.curve(&points, plot.curves[curve].style)
+                self.curve(&points, &Pen::of(plot, layout, curve))
             }
             Layer::Axes => self.axes(plot, layout),
             Layer::LegendBox => self.legend_box(layout),
@@ -117,10 +143,9 @@ impl<B: DrawingBackend> Canvas<'_, B> {
         Ok(())
     }
 
-    fn curve(&self, points: &[Point], style: usize) -> Drawn<B> {
-        let style = Style::of(style);
-        let dashes = if self.cuts_dashes { style.dashes() } else { &[] };
-        cut(points, dashes).iter().try_for_each(|piece| self.line(piece, style.on_light(), CURVE_WIDTH))
+    fn curve(&self, points: &[Point], pen: &Pen) -> Drawn<B> {
+        let dashes = if self.cuts_dashes { pen.dashes } else { &[] };
+        cut(points, dashes).iter().try_for_each(|piece| self.line(piece, pen.colour, pen.width))
     }
 
     fn axes(&self, plot: &Plot, layout: &Layout) -> Drawn<B> {
@@ -128,19 +153,28 @@ impl<B: DrawingBackend> Canvas<'_, B> {
         let (middle, centre) = ((area.left + area.right) / 2.0, (area.top + area.bottom) / 2.0);
         let corners = [(0.0, 0.0), (0.0, 1.0), (1.0, 1.0), (1.0, 0.0), (0.0, 0.0)];
         self.line(&corners.map(|(x, y)| area.at(x, y)), INK, 1.0)?;
+        let text = layout.text;
         let (marks, decimals) = ticks(plot.x_max);
         for x in marks {
             let (x_at, y_at) = area.at(x / plot.x_max, 0.0);
-            self.text(&format!("{x:.decimals$}"), (x_at, y_at + 7.0), 13.0, (HPos::Center, VPos::Top))?;
+            let at = (x_at, y_at + 7.0 * text);
+            self.text(&format!("{x:.decimals$}"), at, 13.0 * text, (HPos::Center, VPos::Top))?;
         }
         for y in ticks(1.0).0 {
             let (x_at, y_at) = area.at(0.0, y);
-            self.text(&format!("{y:.1}"), (x_at - 7.0, y_at), 13.0, (HPos::Right, VPos::Center))?;
+            self.text(
+                &format!("{y:.1}"),
+                (x_at - 7.0 * text, y_at),
+                13.0 * text,
+                (HPos::Right, VPos::Center),
+            )?;
         }
-        self.text(&plot.title, (middle, 12.0), 19.0, (HPos::Center, VPos::Top))?;
-        self.text(&plot.x_label, (middle, HEIGHT - 28.0), 16.0, (HPos::Center, VPos::Top))?;
-        let upwards = self.style(16.0, (HPos::Center, VPos::Top)).transform(FontTransform::Rotate270);
-        self.area.draw_text(&plot.y_label, &upwards, self.pixel((12.0, centre)))
+        if layout.has_title {
+            self.text(&plot.title, (middle, 12.0 * text), 19.0 * text, (HPos::Center, VPos::Top))?;
+        }
+        self.text(&plot.x_label, (middle, HEIGHT - 28.0 * text), 16.0 * text, (HPos::Center, VPos::Top))?;
+        let upwards = self.style(16.0 * text, (HPos::Center, VPos::Top)).transform(FontTransform::Rotate270);
+        self.area.draw_text(&plot.y_label, &upwards, self.pixel((12.0 * text, centre)))
     }
 
     fn legend_box(&self, layout: &Layout) -> Drawn<B> {
@@ -154,10 +188,9 @@ impl<B: DrawingBackend> Canvas<'_, B> {
     fn legend_row(&self, plot: &Plot, layout: &Layout, rank: usize, curve: usize) -> Drawn<B> {
         let Some(legend) = layout.legend else { return Ok(()) };
         let (left, right, text, middle) = legend.row(rank);
-        let curve = &plot.curves[curve];
-        self.curve(&[(left, middle), (right, middle)], curve.style)?;
+        self.curve(&[(left, middle), (right, middle)], &Pen::of(plot, layout, curve))?;
         let size = legend.letters / LETTERS_PER_SIZE;
-        self.text(&curve.legend(), (text, middle), size, (HPos::Left, VPos::Center))
+        self.text(&plot.curves[curve].legend(), (text, middle), size, (HPos::Left, VPos::Center))
     }
 
     fn line(&self, points: &[Point], colour: Rgb, width: f64) -> Drawn<B> {

@@ -6,7 +6,7 @@
 
 use plotters::style::{FontDesc, FontFamily, FontStyle};
 
-use super::{Curve, Plot, draw::FONTS};
+use super::{Appearance, Curve, Plot, style::FONTS};
 
 /// A plot's size.
 pub(super) const WIDTH: f64 = 720.0;
@@ -15,6 +15,7 @@ pub(super) const HEIGHT: f64 = 500.0;
 const MARGIN_LEFT: f64 = 68.0;
 const MARGIN_RIGHT: f64 = 18.0;
 const MARGIN_TOP: f64 = 42.0;
+const MARGIN_TOP_UNTITLED: f64 = 14.0;
 const MARGIN_BOTTOM: f64 = 58.0;
 
 /// Between the legend and the edge of the plotting area, and between the legend and the curves.
@@ -54,6 +55,11 @@ pub(super) struct Legend {
 pub(super) struct Layout {
     pub(super) area: Area,
     pub(super) legend: Option<Legend>,
+    /// By how much letters are larger than usual.
+    pub(super) text: f64,
+    pub(super) has_title: bool,
+    /// The curve that is to be seen first.
+    pub(super) highlight: Option<usize>,
 }
 
 impl Plot {
@@ -65,32 +71,46 @@ impl Plot {
     /// The plotting area, from threshold 0 at its left to `x_max` at its right and from value 0 at its bottom to 1 at
     /// its top.
     pub fn area(&self) -> Area {
-        self.layout().area
+        self.layout(&Appearance::default()).area
     }
 
-    pub(super) fn layout(&self) -> Layout {
+    pub(super) fn layout(&self, appearance: &Appearance) -> Layout {
+        let text = appearance.text_factor();
+        let top = if appearance.has_title { MARGIN_TOP } else { MARGIN_TOP_UNTITLED };
         let whole = Area {
-            left: MARGIN_LEFT,
-            top: MARGIN_TOP,
-            right: WIDTH - MARGIN_RIGHT,
-            bottom: HEIGHT - MARGIN_BOTTOM,
+            left: MARGIN_LEFT * text,
+            top: top * text,
+            right: WIDTH - MARGIN_RIGHT * text,
+            bottom: HEIGHT - MARGIN_BOTTOM * text,
         };
-        if self.curves.is_empty() {
-            return Layout { area: whole, legend: None };
-        }
-        let inside = LETTERS.iter().find_map(|&letters| {
+        let (area, legend) = match self.legend_inside(whole, text) {
+            _ if self.curves.is_empty() => (whole, None),
+            Some(inside) => (whole, Some(inside)),
+            None => {
+                let (area, legend) = beside(whole, &self.curves, text);
+                (area, Some(legend))
+            }
+        };
+        let highlight = appearance.highlight.as_ref();
+        let highlight = highlight.and_then(|name| self.curves.iter().position(|curve| curve.label == *name));
+        Layout { area, legend, text, has_title: appearance.has_title, highlight }
+    }
+
+    fn legend_inside(&self, whole: Area, text: f64) -> Option<Legend> {
+        LETTERS.iter().find_map(|&letters| {
+            let letters = letters * text;
             let (w, h) = legend_size(&self.curves, letters);
-            corners(whole, w, h).into_iter().find(|place| self.is_free(whole, *place)).map(|place| {
-                let legend = Legend { place, letters, inside: true };
-                Layout { area: whole, legend: Some(legend) }
-            })
-        });
-        inside.unwrap_or_else(|| beside(whole, &self.curves))
+            let place = corners(whole, w, h).into_iter().find(|place| self.is_free(whole, *place))?;
+            Some(Legend { place, letters, inside: true })
+        })
     }
 
     /// Whether no curve comes near a place in the plotting area.
     fn is_free(&self, area: Area, place: Area) -> bool {
-        let fits = place.left > area.left && place.bottom < area.bottom && place.top > area.top;
+        let fits = place.left > area.left
+            && place.right < area.right
+            && place.bottom < area.bottom
+            && place.top > area.top;
         let near = Area {
             left: place.left - GAP,
             top: place.top - GAP,
@@ -172,7 +192,7 @@ fn corners(area: Area, w: f64, h: f64) -> [Area; 4] {
 }
 
 /// The legend to the right of a plotting area that makes room for it.
-fn beside(whole: Area, curves: &[Curve]) -> Layout {
+fn beside(whole: Area, curves: &[Curve], text: f64) -> (Area, Legend) {
     let height = whole.bottom - whole.top;
     let widest = whole.right - whole.left - NARROWEST;
     let fits = |letters: f64| {
@@ -180,12 +200,12 @@ fn beside(whole: Area, curves: &[Curve]) -> Layout {
         let share = (height / h).min(widest / w);
         if share < 1.0 { letters * share } else { letters }
     };
-    let letters = fits(LETTERS[1]);
+    let letters = fits(LETTERS[1] * text);
     let (w, h) = legend_size(curves, letters);
     let left = WIDTH - MARGIN_RIGHT / 2.0 - w;
     let place = Area { left, top: whole.top, right: left + w, bottom: whole.top + h };
     let area = Area { right: left - GAP, ..whole };
-    Layout { area, legend: Some(Legend { place, letters, inside: false }) }
+    (area, Legend { place, letters, inside: false })
 }
 
 fn legend_size(curves: &[Curve], letters: f64) -> (f64, f64) {

@@ -13,7 +13,7 @@ mod tests;
 
 use thiserror::Error;
 
-pub use csv::curves_csv;
+pub use csv::{curves_csv, points_csv};
 pub use layout::Area;
 pub(crate) use render::escape;
 pub use style::Style;
@@ -51,6 +51,38 @@ pub struct Plot {
     pub mark: Option<f64>,
     /// The curves, in the order of the trackers; the legend ranks them.
     pub curves: Vec<Curve>,
+}
+
+/// Points of a plot's width unless another is asked for: 720 pixels of CSS.
+const USUAL_POINTS: f64 = 540.0;
+/// Size of an axis's label in units of a plot that is 720 wide.
+const LABEL_SIZE: f64 = 16.0;
+
+/// How a plot is to look.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Appearance {
+    /// Width, points (72 an inch); `None` for a web page's 720 pixels.
+    pub width_points: Option<f64>,
+    /// Size of the axes' labels, points; `None` for the usual share of the width. Other texts keep their proportion to it.
+    pub font_points: Option<f64>,
+    /// Whether the title is drawn; a paper has it in the caption.
+    pub has_title: bool,
+    /// The tracker that is drawn in front and alone in colour.
+    pub highlight: Option<String>,
+}
+
+impl Default for Appearance {
+    fn default() -> Self {
+        Self { width_points: None, font_points: None, has_title: true, highlight: None }
+    }
+}
+
+impl Appearance {
+    /// By how much letters are larger than usual. With more than 3 nothing but letters would be left.
+    pub fn text_factor(&self) -> f64 {
+        let usual = LABEL_SIZE / layout::WIDTH * self.width_points.unwrap_or(USUAL_POINTS);
+        self.font_points.map_or(1.0, |points| points / usual)
+    }
 }
 
 /// Why a plot or its CSV cannot be made.
@@ -131,6 +163,18 @@ pub fn normalised_precision_plot(title: impl Into<String>, curves: Vec<Curve>) -
     }
 }
 
+/// A plot of precision over recall, over the thresholds of a tracker's confidence.
+pub fn precision_recall_plot(title: impl Into<String>, curves: Vec<Curve>) -> Plot {
+    Plot {
+        title: title.into(),
+        x_label: "Recall".into(),
+        y_label: "Precision".into(),
+        x_max: 1.0,
+        mark: None,
+        curves,
+    }
+}
+
 impl Plot {
     /// The curves' indices from the highest score to the lowest; equal scores keep the curves' order, NaN comes last.
     pub fn ranking(&self) -> Vec<usize> {
@@ -141,6 +185,18 @@ impl Plot {
         let mut order: Vec<usize> = (0..self.curves.len()).collect();
         order.sort_by(|&a, &b| score(b).total_cmp(&score(a)));
         order
+    }
+
+    /// With the `count` best ranked curves only, and that of the tracker `always`.
+    pub fn top(mut self, count: usize, always: Option<&str>) -> Self {
+        let ranking = self.ranking();
+        let kept: Vec<usize> = ranking.into_iter().take(count).collect();
+        let mut place = 0;
+        self.curves.retain(|curve| {
+            place += 1;
+            kept.contains(&(place - 1)) || always == Some(curve.label.as_str())
+        });
+        self
     }
 
     /// Says what makes a curve or an axis impossible to draw.

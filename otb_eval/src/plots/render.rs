@@ -1,4 +1,4 @@
-//! A plot as SVG and as PNG.
+//! A plot as SVG, PNG and PDF.
 
 use std::{fmt::Write as _, io::Cursor};
 
@@ -6,15 +6,19 @@ use image::{ImageFormat, RgbImage, imageops};
 use plotters::prelude::*;
 
 use super::{
-    Plot, PlotError, Style,
-    draw::{Canvas, Layer, layers, register_font},
+    Appearance, Plot, PlotError,
+    draw::{Canvas, Layer, Pen, layers, register_font},
     layout::{HEIGHT, Layout, WIDTH},
 };
 
 /// The library draws at whole pixels: SVG is drawn larger for tenths of a unit.
 const SVG_SCALE: u32 = 10;
-/// The PNG's pixels a unit, and how many are drawn for each of them each way, for smooth edges.
-const PNG_SCALE: u32 = 2;
+/// Points are the unit of a PDF.
+const POINTS_AN_INCH: f32 = 72.0;
+/// The PNG's pixels across unless a width is asked for, and an inch if one is.
+const PNG_WIDTH: f64 = 1440.0;
+const PNG_PIXELS_AN_INCH: f64 = 300.0;
+/// Pixels that are drawn for each of the PNG's each way, for smooth edges.
 const PNG_SAMPLES: u32 = 3;
 
 impl Plot {
@@ -26,10 +30,22 @@ impl Plot {
     /// # Errors
     /// If a curve cannot be drawn.
     pub fn svg(&self) -> Result<String, PlotError> {
-        let layout = self.prepare()?;
+        self.svg_as(&Appearance::default())
+    }
+
+    /// The plot as [`svg`](Self::svg) gives it, with another look.
+    ///
+    /// # Errors
+    /// If a curve cannot be drawn.
+    pub fn svg_as(&self, appearance: &Appearance) -> Result<String, PlotError> {
+        let layout = self.prepare(appearance)?;
         let title = escape(&self.title);
+        let (width, height) = match appearance.width_points {
+            None => (WIDTH.to_string(), HEIGHT.to_string()),
+            Some(width) => (format!("{width}pt"), format!("{}pt", width * HEIGHT / WIDTH)),
+        };
         let mut svg = format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{WIDTH}\" height=\"{HEIGHT}\" \
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
              viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\" aria-label=\"{title}\">\n\
              <g transform=\"scale({})\">\n",
             1.0 / f64::from(SVG_SCALE)
@@ -39,7 +55,7 @@ impl Plot {
             if drawn.is_empty() {
                 continue;
             }
-            let attributes = self.svg_attributes(layer);
+            let attributes = self.svg_attributes(&layout, layer);
             let hit = hit_area(&layout, layer);
             let _ = writeln!(svg, "<g {attributes}>{hit}{drawn}</g>");
         }
@@ -47,22 +63,26 @@ impl Plot {
         Ok(svg)
     }
 
-    /// The plot as a PNG file's bytes, with two pixels a unit of [`Plot::size`].
+    /// The plot as a PNG file's bytes: 1440 pixels across, or 300 an inch of the width asked for.
     ///
     /// # Errors
     /// If a curve cannot be drawn.
-    pub fn png(&self) -> Result<Vec<u8>, PlotError> {
-        let layout = self.prepare()?;
-        let scale = PNG_SCALE * PNG_SAMPLES;
-        let (width, height) = (WIDTH as u32 * scale, HEIGHT as u32 * scale);
-        let mut large = RgbImage::new(width, height);
+    pub fn png(&self, appearance: &Appearance) -> Result<Vec<u8>, PlotError> {
+        let layout = self.prepare(appearance)?;
+        let across = appearance.width_points.map_or(PNG_WIDTH, |points| points / 72.0 * PNG_PIXELS_AN_INCH);
+        let width = (across.round() as u32).max(1);
+        let height = ((across * HEIGHT / WIDTH).round() as u32).max(1);
+        let (drawn_width, drawn_height) = (width * PNG_SAMPLES, height * PNG_SAMPLES);
+        let mut large = RgbImage::new(drawn_width, drawn_height);
         {
-            let area = BitMapBackend::with_buffer(&mut large, (width, height)).into_drawing_area();
-            let canvas = Canvas { area: &area, scale: f64::from(scale), cuts_dashes: true };
+            let area =
+                BitMapBackend::with_buffer(&mut large, (drawn_width, drawn_height)).into_drawing_area();
+            let scale = f64::from(drawn_width) / WIDTH;
+            let canvas = Canvas { area: &area, scale, cuts_dashes: true };
             layers(self, &layout).into_iter().try_for_each(|layer| canvas.layer(self, &layout, layer))?;
             area.present().map_err(|error| self.drawing_error(&error))?;
         }
-        let picture = imageops::thumbnail(&large, width / PNG_SAMPLES, height / PNG_SAMPLES);
+        let picture = imageops::thumbnail(&large, width, height);
         let mut png = Cursor::new(Vec::new());
         picture
             .write_to(&mut png, ImageFormat::Png)
@@ -70,10 +90,26 @@ impl Plot {
         Ok(png.into_inner())
     }
 
-    fn prepare(&self) -> Result<Layout, PlotError> {
+    /// The plot as a PDF file's bytes, its font embedded: 540 points wide, or as wide as asked for.
+    ///
+    /// # Errors
+    /// If a curve cannot be drawn.
+    pub fn pdf(&self, appearance: &Appearance) -> Result<Vec<u8>, PlotError> {
+        let width_points = Some(appearance.width_points.unwrap_or(super::USUAL_POINTS));
+        let svg = self.svg_as(&Appearance { width_points, ..appearance.clone() })?;
+        let mut options = svg2pdf::usvg::Options { dpi: POINTS_AN_INCH, ..svg2pdf::usvg::Options::default() };
+        options.fontdb_mut().load_font_data(epaint_default_fonts::UBUNTU_LIGHT.to_vec());
+        let tree =
+            svg2pdf::usvg::Tree::from_str(&svg, &options).map_err(|error| self.drawing_error(&error))?;
+        let page = svg2pdf::PageOptions { dpi: POINTS_AN_INCH };
+        svg2pdf::to_pdf(&tree, svg2pdf::ConversionOptions::default(), page)
+            .map_err(|error| self.drawing_error(&error))
+    }
+
+    fn prepare(&self, appearance: &Appearance) -> Result<Layout, PlotError> {
         self.check()?;
         register_font().map_err(|reason| self.drawing_error(&reason))?;
-        Ok(self.layout())
+        Ok(self.layout(appearance))
     }
 
     /// A layer's elements, without the library's own `<svg>` around them.
@@ -91,7 +127,8 @@ impl Plot {
     }
 
     /// What tells a layer apart, and the dashes of its lines.
-    fn svg_attributes(&self, layer: Layer) -> String {
+    fn svg_attributes(&self, layout: &Layout, layer: Layer) -> String {
+        let dashes = |curve: usize| dash_array(&Pen::of(self, layout, curve));
         match layer {
             Layer::Background => "class=\"paper\"".into(),
             Layer::Grid => "class=\"grid\"".into(),
@@ -100,11 +137,11 @@ impl Plot {
             Layer::LegendBox => "class=\"legend\"".into(),
             Layer::Curve(curve) => {
                 let style = self.curves[curve].style;
-                format!("class=\"curve s{style}\" stroke-linejoin=\"round\"{}", dash_array(style))
+                format!("class=\"curve s{style}\" stroke-linejoin=\"round\"{}", dashes(curve))
             }
             Layer::LegendRow { curve, .. } => {
                 let style = self.curves[curve].style;
-                format!("class=\"row s{style}\"{}", dash_array(style))
+                format!("class=\"row s{style}\"{}", dashes(curve))
             }
         }
     }
@@ -114,9 +151,9 @@ impl Plot {
     }
 }
 
-fn dash_array(style: usize) -> String {
+fn dash_array(pen: &Pen) -> String {
     let dashes: Vec<String> =
-        Style::of(style).dashes().iter().map(|dash| (dash * f64::from(SVG_SCALE)).to_string()).collect();
+        pen.dashes.iter().map(|dash| (dash * f64::from(SVG_SCALE)).to_string()).collect();
     if dashes.is_empty() { String::new() } else { format!(" stroke-dasharray=\"{}\"", dashes.join(" ")) }
 }
 

@@ -4,8 +4,21 @@
 //! yellow, which white paper swallows, and go on with dark ones that differ from them in lightness. The pattern
 //! alone tells twelve trackers apart where there is no colour.
 
+/// What the texts of an SVG ask for. The font that the program carries is registered under the same name.
+pub(super) const FONTS: &str = "Ubuntu, Segoe UI, Helvetica, Arial, sans-serif";
+
 /// A colour as (red, green, blue).
 pub(crate) type Rgb = (u8, u8, u8);
+
+/// The curve that is to be seen first, where one is.
+pub(super) const HIGHLIGHT: Rgb = (0xc8, 0x1e, 0x1e);
+
+/// The others beside it, the best ranked darkest; their dashes tell them apart.
+pub(super) fn grey(rank: usize, count: usize) -> Rgb {
+    let share = rank as f64 / count.saturating_sub(1).max(1) as f64;
+    let level = (70.0 + 100.0 * share).round() as u8;
+    (level, level, level)
+}
 
 /// On white, and on a dark background.
 const COLOURS: [(Rgb, Rgb); 12] = [

@@ -61,7 +61,7 @@ fn texts_are_escaped_and_nothing_is_fetched() {
 fn the_same_plot_gives_the_same_bytes() {
     let plot = precision_plot("Precision", trackers(3));
     assert_eq!(plot.svg().unwrap(), plot.svg().unwrap());
-    assert_eq!(plot.png().unwrap(), plot.png().unwrap());
+    assert_eq!(plot.png(&Appearance::default()).unwrap(), plot.png(&Appearance::default()).unwrap());
 }
 
 #[test]
@@ -69,7 +69,7 @@ fn a_png_shows_each_curve_in_its_colour_where_the_area_says() {
     let flat =
         |style, y| Curve { label: format!("{style}"), style, score: y, x: vec![0.0, 1.0], y: vec![y, y] };
     let plot = success_plot("Success", vec![flat(0, 0.35), flat(12, 0.65)]);
-    let picture = image::load_from_memory(&plot.png().unwrap()).unwrap().to_rgb8();
+    let picture = image::load_from_memory(&plot.png(&Appearance::default()).unwrap()).unwrap().to_rgb8();
     assert_eq!(picture.dimensions(), (1440, 1000));
     let area = plot.area();
     let y = area.bottom - 0.35 * (area.bottom - area.top);
@@ -84,7 +84,7 @@ fn a_png_shows_each_curve_in_its_colour_where_the_area_says() {
 fn the_legend_never_lies_on_a_curve() {
     for count in [1, 4, 11, 20, 40] {
         for plot in [success_plot("s", trackers(count)), precision_plot("p", trackers(count))] {
-            let layout = plot.layout();
+            let layout = plot.layout(&Appearance::default());
             let place = layout.legend.unwrap().place;
             assert!(place.bottom <= layout::HEIGHT && place.right <= layout::WIDTH, "{count}: {place:?}");
             for curve in &plot.curves {
@@ -95,6 +95,83 @@ fn the_legend_never_lies_on_a_curve() {
             }
         }
     }
+}
+
+#[test]
+fn a_papers_figure_has_the_width_and_the_letters_asked_for() {
+    let plot = success_plot("Success plots of OPE", trackers(11));
+    let paper = Appearance {
+        width_points: Some(252.0),
+        font_points: Some(8.0),
+        has_title: false,
+        highlight: Some("Tracker3".into()),
+    };
+    let svg = plot.svg_as(&paper).unwrap();
+    assert!(svg.contains("width=\"252pt\" height=\"175pt\""));
+    assert!(
+        !svg.contains(">\nSuccess plots of OPE") && svg.matches("Success plots of OPE").count() == 1,
+        "in aria-label alone"
+    );
+    // 8 points in units of the drawing, ten of which are one of 720 across.
+    let label = svg.split("<text").find(|text| text.contains("Overlap threshold")).unwrap();
+    let size: f64 = label.split("font-size=\"").nth(1).unwrap().split('"').next().unwrap().parse().unwrap();
+    assert!((size * 252.0 / 7200.0 - 8.0).abs() < 0.05, "{size}");
+    let png = image::load_from_memory(&plot.png(&paper).unwrap()).unwrap();
+    assert_eq!((png.width(), png.height()), (1050, 729));
+    for count in [1, 4, 11, 20, 40] {
+        for text in [0.5, 1.0, 1.5, 2.0, 3.0] {
+            let appearance = Appearance { font_points: Some(12.0 * text), ..Appearance::default() };
+            let plot = success_plot("s", trackers(count));
+            let layout = plot.layout(&appearance);
+            let place = layout.legend.unwrap().place;
+            assert!(
+                layout.area.right - layout.area.left > 100.0 && layout.area.bottom - layout.area.top > 100.0
+            );
+            assert!(
+                place.right <= layout::WIDTH && place.bottom <= layout::HEIGHT,
+                "{count} at {text}: {place:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_highlighted_curve_is_drawn_last_and_alone_in_colour() {
+    let appearance = Appearance { highlight: Some("Tracker3".into()), ..Appearance::default() };
+    let plot = success_plot("Success", trackers(11));
+    let svg = plot.svg_as(&appearance).unwrap();
+    let last = svg.rfind("class=\"curve ").unwrap();
+    assert!(svg[last..].starts_with("class=\"curve s3\""));
+    let colour_of = |style: usize| {
+        let curve = svg.split(&format!("class=\"curve s{style}\"")).nth(1).unwrap();
+        let stroke = curve.split("stroke=\"#").nth(1).unwrap();
+        stroke[..6].to_owned()
+    };
+    let is_grey = |colour: &str| colour[..2] == colour[2..4] && colour[2..4] == colour[4..];
+    for style in 0..11 {
+        assert_eq!(is_grey(&colour_of(style)), style != 3, "{style}: {}", colour_of(style));
+    }
+    let nobody = Appearance { highlight: Some("Nobody".into()), ..Appearance::default() };
+    assert_eq!(plot.svg_as(&nobody).unwrap(), plot.svg().unwrap());
+}
+
+#[test]
+fn the_best_are_kept_and_the_one_that_is_wanted() {
+    let labels = |plot: Plot| plot.curves.into_iter().map(|curve| curve.label).collect::<Vec<_>>();
+    let plot = || success_plot("s", trackers(6));
+    assert_eq!(labels(plot().top(2, None)), ["Tracker4", "Tracker5"]);
+    assert_eq!(labels(plot().top(2, Some("Tracker1"))), ["Tracker1", "Tracker4", "Tracker5"]);
+    assert_eq!(labels(plot().top(9, Some("Tracker1"))).len(), 6);
+}
+
+#[test]
+fn a_pdf_is_one_page_of_the_width_with_its_font_in_it() {
+    let plot = precision_plot("Precision", trackers(4));
+    let pdf = plot.pdf(&Appearance { width_points: Some(252.0), ..Appearance::default() }).unwrap();
+    let text = String::from_utf8_lossy(&pdf);
+    assert!(text.starts_with("%PDF-") && text.contains("/MediaBox [0 0 252 175]"), "{}", &text[..200]);
+    assert!(text.contains("/FontFile"), "the font is embedded");
+    assert_eq!(pdf, plot.pdf(&Appearance { width_points: Some(252.0), ..Appearance::default() }).unwrap());
 }
 
 #[test]
@@ -146,6 +223,10 @@ fn csv_has_every_digit_and_quotes_what_needs_it() {
     assert_eq!(
         curves_csv(&curves).unwrap(),
         "threshold,KCF,\"a \"\"b\"\", c\"\n0,1,0.5\n0.05,0.30000000000000004,0.3333333333333333\n"
+    );
+    assert_eq!(
+        points_csv(&curves[1..]),
+        "tracker,x,y\n\"a \"\"b\"\", c\",0,0.5\n\"a \"\"b\"\", c\",0.05,0.3333333333333333\n"
     );
     assert_eq!(curves_csv(&[]).unwrap(), "threshold\n");
     let other = Curve { x: vec![0.0, 0.1], ..curves[0].clone() };

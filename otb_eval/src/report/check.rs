@@ -29,6 +29,11 @@ impl Report {
                 of_trackers(format!("`{}` in chart `{}`", row.attribute, chart.title), row.scores.len())?;
             }
         }
+        for timeline in &self.timelines {
+            let place = || format!("the timeline of `{}`", timeline.sequence);
+            of_trackers(place(), timeline.overlaps.len())?;
+            of_trackers(place(), timeline.errors.len())?;
+        }
         for strip in &self.strips {
             for frame in &strip.frames {
                 of_trackers(format!("frame {} of `{}`", frame.number, strip.sequence), frame.boxes.len())?;

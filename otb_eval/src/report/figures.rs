@@ -1,11 +1,15 @@
-//! Plots, bars by attribute, and the numbers under the pointer.
+//! Plots, and the numbers under the pointer.
 
 use std::fmt::Write as _;
 
+use base64::{Engine as _, engine::general_purpose::STANDARD};
 use serde_json::{Value, json};
 
-use super::{AttributeChart, Report, ReportError, page::tabs, tables};
-use crate::plots::{Plot, escape};
+use super::{
+    Report, ReportError, Timeline,
+    parts::{Choice, panels},
+};
+use crate::plots::Plot;
 
 /// Digits of a value under the pointer.
 const DECIMALS: i32 = 4;
@@ -24,14 +28,15 @@ pub(super) fn plots(report: &Report) -> Result<String, ReportError> {
         }
         groups.push((group.title.as_str(), html + "</div>\n"));
     }
-    Ok(tabs(groups.into_iter()))
+    Ok(panels(Choice::Tabs, groups.into_iter()))
 }
 
-/// What the script needs of every plot, as JSON that can stand in a page.
+/// What the script needs of every plot and timeline, as JSON that can stand in a page.
 pub(super) fn numbers(report: &Report) -> String {
     let plots: Vec<Value> = report.plots.iter().flat_map(|group| &group.plots).map(plot_numbers).collect();
     let labels: Vec<&str> = report.trackers.iter().map(|tracker| tracker.label.as_str()).collect();
-    let json = json!({ "trackers": labels, "plots": plots });
+    let timelines: Vec<Value> = report.timelines.iter().map(timeline_numbers).collect();
+    let json = json!({ "trackers": labels, "plots": plots, "timelines": timelines });
     json.to_string().replace('<', "\\u003c").replace('>', "\\u003e").replace('&', "\\u0026")
 }
 
@@ -54,47 +59,33 @@ fn plot_numbers(plot: &Plot) -> Value {
     json!({ "area": rounded(&corners), "max": plot.x_max, "label": plot.x_label, "curves": curves })
 }
 
+/// Stands for a frame without a value.
+const NOTHING: u8 = 255;
+/// Steps of a value that is shown.
+const STEPS: f64 = 250.0;
+
+/// A byte a value, so that a page of a hundred sequences stays small: overlaps in 250ths, errors in 250ths of the largest.
+fn timeline_numbers(timeline: &Timeline) -> Value {
+    let largest = timeline.errors.iter().flatten().flatten().copied().fold(1.0, f64::max);
+    let bytes = |values: &Vec<Option<f64>>, unit: f64| {
+        let byte = |value: &Option<f64>| {
+            value.map_or(NOTHING, |value| (value / unit * STEPS).round().clamp(0.0, STEPS) as u8)
+        };
+        STANDARD.encode(values.iter().map(byte).collect::<Vec<u8>>())
+    };
+    let overlaps: Vec<String> = timeline.overlaps.iter().map(|values| bytes(values, 1.0)).collect();
+    let errors: Vec<String> = timeline.errors.iter().map(|values| bytes(values, largest)).collect();
+    json!({
+        "name": timeline.sequence,
+        "every": timeline.every,
+        "frames": timeline.frames,
+        "largest": (largest * 10.0).round() / 10.0,
+        "overlaps": overlaps,
+        "errors": errors,
+    })
+}
+
 fn rounded(values: &[f64]) -> Vec<f64> {
     let scale = 10f64.powi(DECIMALS);
     values.iter().map(|value| (value * scale).round() / scale).collect()
-}
-
-/// Grouped bars, and the same numbers as a table.
-pub(super) fn attributes(report: &Report) -> String {
-    tabs(report.attributes.iter().map(|chart| {
-        let source = format!("<p>Attributes from <b>{}</b>.</p>\n", escape(&chart.source));
-        let rows = chart
-            .attributes
-            .iter()
-            .map(|row| (format!("{} ({})", row.attribute, row.sequences), row.scores.as_slice()));
-        let table = tables::by_tracker(report, "Attribute (sequences)", rows);
-        let bars = bars(report, chart);
-        (
-            chart.title.as_str(),
-            format!("{source}{bars}<details><summary>Numbers</summary>\n{table}</details>\n"),
-        )
-    }))
-}
-
-fn bars(report: &Report, chart: &AttributeChart) -> String {
-    let mut html = String::from("<div class=\"scroll\"><div class=\"bars\">\n<div class=\"scale\">");
-    for fifth in (0..=5).rev() {
-        let _ = write!(html, "<span>{:.1}</span>", f64::from(fifth) / 5.0);
-    }
-    html.push_str("</div>\n");
-    for row in &chart.attributes {
-        html.push_str("<div class=\"group\"><div class=\"stack\">");
-        for (place, score) in row.scores.iter().enumerate() {
-            let Some(score) = score.filter(|score| score.is_finite()) else { continue };
-            let height = 100.0 * score.clamp(0.0, 1.0);
-            let label = escape(&report.trackers[place].label);
-            let _ = write!(
-                html,
-                "<i class=\"s{place}\" style=\"height:{height:.1}%\" title=\"{label} {score:.3}\"></i>"
-            );
-        }
-        let _ =
-            writeln!(html, "</div><b>{}</b><small>{}</small></div>", escape(&row.attribute), row.sequences);
-    }
-    html + "</div></div>\n"
 }

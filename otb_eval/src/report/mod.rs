@@ -1,19 +1,23 @@
 //! The report: one HTML page that needs nothing but itself.
 //!
 //! [`Report`] says what is on the page; nothing here computes a score. The page reads and prints without JavaScript;
-//! with it there are values under the pointer, sorting, tabs and trackers to switch on and off. The same model gives
+//! with it there are values under the pointer, sorting, filtering, downloads, every sequence over time, and trackers to switch on and off. The same model gives
 //! the same bytes.
 
 mod check;
 mod figures;
 mod page;
+mod parts;
 mod strips;
 mod tables;
 
 use infopart::geometry::Rect;
 use thiserror::Error;
 
-use crate::plots::{Plot, PlotError};
+use crate::{
+    plots::{Plot, PlotError},
+    statistics::Interval,
+};
 
 /// All that a report shows. Lists of values for each tracker follow the order of `trackers`. What is empty is left
 /// out of the page.
@@ -35,14 +39,18 @@ pub struct Report {
     pub overall: Vec<OverallTable>,
     /// Plots: a tab for each group.
     pub plots: Vec<PlotGroup>,
-    /// Bars by attribute: a tab for each chart.
+    /// Scores by attribute: a heat map for each chart.
     pub attributes: Vec<AttributeChart>,
-    /// Scores by sequence, a tab for each metric.
+    /// Scores by sequence, a table for each metric, of which one is shown.
     pub sequences: Vec<SequenceTable>,
     /// Frames with boxes, a strip for each sequence; empty for a small page.
     pub strips: Vec<Strip>,
+    /// Overlap and centre error over time, for each sequence; may be empty.
+    pub timelines: Vec<Timeline>,
     /// Jobs that failed.
     pub failures: Vec<Failure>,
+    /// What was met in scoring: results that lack rows, that a toolkit would fail on, that were read otherwise.
+    pub scoring: Vec<String>,
     /// What a reader must know to judge the numbers, such as which toolkit's rules hold.
     pub notes: Vec<String>,
 }
@@ -74,6 +82,8 @@ pub struct OverallTable {
     pub metrics: Vec<String>,
     /// A row for each tracker that has scores.
     pub rows: Vec<OverallRow>,
+    /// Heading of the differences to the tracker that all are tested against; `None` if there is none.
+    pub against: Option<String>,
 }
 
 /// A tracker's scores over all sequences.
@@ -87,6 +97,19 @@ pub struct OverallRow {
     pub scores: Vec<Option<Score>>,
     /// Speed, frames a second.
     pub fps: Option<f64>,
+    /// How it differs from the tracker that all are tested against; `None` for that one itself.
+    pub against: Option<Tested>,
+}
+
+/// How a tracker differs from another.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tested {
+    /// Mean difference over sequences.
+    pub difference: f64,
+    /// Its 95 % interval.
+    pub interval: Interval,
+    /// Probability of such a difference if they were alike.
+    pub p: f64,
 }
 
 /// A score and how much it varies.
@@ -96,6 +119,8 @@ pub struct Score {
     pub mean: f64,
     /// Standard deviation over the seeds; `None` with one seed.
     pub spread: Option<f64>,
+    /// 95 % interval over sequences.
+    pub interval: Option<Interval>,
 }
 
 /// One metric's scores by sequence and tracker.
@@ -145,6 +170,21 @@ pub struct Strip {
     pub sequence: String,
     /// Its frames, in order.
     pub frames: Vec<StripFrame>,
+}
+
+/// How well a sequence was followed over time.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Timeline {
+    /// The sequence's name.
+    pub sequence: String,
+    /// Frames of the sequence.
+    pub frames: usize,
+    /// The values are of frames 1, 1 + `every`, 1 + 2 `every`, ...
+    pub every: usize,
+    /// Each tracker's overlaps, in [0, 1]; `None` where the target is absent, or there is no result.
+    pub overlaps: Vec<Vec<Option<f64>>>,
+    /// Each tracker's centre errors, pixels.
+    pub errors: Vec<Vec<Option<f64>>>,
 }
 
 /// A frame with everyone's boxes.
@@ -215,6 +255,20 @@ pub enum ReportError {
 }
 
 impl Report {
+    /// The place of the panel that shows a sequence over time or its frames; `None` if nothing of it is shown.
+    fn shown(&self, sequence: &str) -> Option<usize> {
+        self.shown_sequences().iter().position(|name| *name == sequence)
+    }
+
+    /// The sequences that are shown, in their order.
+    fn shown_sequences(&self) -> Vec<&str> {
+        let mut names: Vec<&str> = self.timelines.iter().map(|one| one.sequence.as_str()).collect();
+        let known: std::collections::HashSet<&str> = names.iter().copied().collect();
+        names
+            .extend(self.strips.iter().map(|one| one.sequence.as_str()).filter(|name| !known.contains(name)));
+        names
+    }
+
     /// The report as an HTML page.
     ///
     /// # Errors

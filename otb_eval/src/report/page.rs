@@ -2,12 +2,12 @@
 //!
 //! 1. Head: the style, with a rule for each tracker's colours.
 //! 2. Header, and the bar of trackers.
-//! 3. Overall scores, plots, attributes, sequences, strips, failures, notes, how it was made.
+//! 3. Overall scores, plots, attributes, sequences, each over time with frames, failed jobs, what scoring met, rules, how it was made.
 //! 4. The plots' numbers and the script.
 
 use std::fmt::Write as _;
 
-use super::{Report, ReportError, figures, strips, tables};
+use super::{Report, ReportError, figures, parts::sample, strips, tables};
 use crate::plots::{Style, escape};
 
 const STYLE: &str = include_str!("page.css");
@@ -26,11 +26,12 @@ pub(super) fn page(report: &Report) -> Result<String, ReportError> {
     html.push_str("<main>\n");
     section(&mut html, "overall", "Overall", &tables::overall(report));
     section(&mut html, "plots", "Plots", &figures::plots(report)?);
-    section(&mut html, "attributes", "Attributes", &figures::attributes(report));
+    section(&mut html, "attributes", "Attributes", &tables::attributes(report));
     section(&mut html, "sequences", "Sequences", &tables::sequences(report));
-    section(&mut html, "frames", "Frames", &strips::strips(report));
-    section(&mut html, "failures", "Failures", &failures(report));
-    section(&mut html, "notes", "Notes", &notes(report));
+    section(&mut html, "time", "Over time", &strips::sequences(report));
+    section(&mut html, "failures", "Failed jobs", &failures(report));
+    section(&mut html, "scoring", "Met in scoring", &list(&report.scoring));
+    section(&mut html, "notes", "Rules", &list(&report.notes));
     section(&mut html, "made", "How this was made", &how_made(report));
     let numbers = figures::numbers(report);
     let _ = write!(
@@ -93,31 +94,11 @@ fn tracker_bar(report: &Report) -> String {
     html + "<button type=\"button\" data-all=\"1\">all</button><button type=\"button\" data-all=\"\">none</button>\n</div>\n"
 }
 
-/// A short line in a tracker's colour and dashes.
-pub(super) fn sample(place: usize) -> String {
-    let dashes: Vec<String> = Style::of(place).dashes().iter().map(f64::to_string).collect();
-    let dashes =
-        if dashes.is_empty() { String::new() } else { format!(" stroke-dasharray=\"{}\"", dashes.join(" ")) };
-    format!(
-        "<svg class=\"key s{place}\" viewBox=\"0 0 34 8\" aria-hidden=\"true\"><path d=\"M0 4H34\"{dashes}/></svg>"
-    )
-}
-
 /// A section with a heading, unless there is nothing in it.
 fn section(html: &mut String, id: &str, title: &str, content: &str) {
     if !content.is_empty() {
         let _ = writeln!(html, "<section id=\"{id}\">\n<h2>{title}</h2>\n{content}</section>");
     }
-}
-
-/// Panels that the script shows one at a time, and paper one after another.
-pub(super) fn tabs<'a>(panels: impl Iterator<Item = (&'a str, String)>) -> String {
-    let panels: String = panels
-        .map(|(title, content)| {
-            format!("<div class=\"panel\">\n<h3>{}</h3>\n{content}</div>\n", escape(title))
-        })
-        .collect();
-    if panels.is_empty() { panels } else { format!("<div class=\"tabs\">\n{panels}</div>\n") }
 }
 
 fn failures(report: &Report) -> String {
@@ -136,14 +117,14 @@ fn failures(report: &Report) -> String {
         return rows;
     }
     format!(
-        "<div class=\"scroll\"><table>\n<thead><tr><th data-text>Job</th><th data-text>Reason</th></tr></thead>\n\
+        "<div class=\"scroll\"><table data-name=\"failed jobs\">\n<thead><tr><th data-text>Job</th><th data-text>Reason</th></tr></thead>\n\
          <tbody>\n{rows}</tbody></table></div>\n"
     )
 }
 
-fn notes(report: &Report) -> String {
-    let notes: String = report.notes.iter().map(|note| format!("<li>{}</li>\n", escape(note))).collect();
-    if notes.is_empty() { notes } else { format!("<ul>\n{notes}</ul>\n") }
+fn list(texts: &[String]) -> String {
+    let items: String = texts.iter().map(|text| format!("<li>{}</li>\n", escape(text))).collect();
+    if items.is_empty() { items } else { format!("<ul>\n{items}</ul>\n") }
 }
 
 fn how_made(report: &Report) -> String {

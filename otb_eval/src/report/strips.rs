@@ -1,35 +1,49 @@
-//! Frames with boxes: each picture is stored once, the boxes lie over it.
+//! Each sequence over time, which the script draws, and its frames with boxes: a picture is stored once, the boxes lie over it.
 
 use std::fmt::Write as _;
 
 use base64::{Engine as _, engine::general_purpose::STANDARD};
 use infopart::geometry::Rect;
 
-use super::{Report, StripFrame};
+use super::{
+    Report, StripFrame,
+    parts::{Choice, panels},
+};
 use crate::plots::escape;
 
-/// A strip for each sequence.
-pub(super) fn strips(report: &Report) -> String {
-    let mut html = String::new();
-    for strip in &report.strips {
-        let _ = writeln!(html, "<h3>{}</h3>\n<div class=\"strip\">", escape(&strip.sequence));
-        for frame in &strip.frames {
-            html.push_str(&picture(report, &strip.sequence, frame));
+/// A panel for each sequence; one is chosen from a list.
+pub(super) fn sequences(report: &Report) -> String {
+    let names = report.shown_sequences();
+    let shown = names.iter().enumerate().map(|(place, name)| {
+        let mut html = format!("<div id=\"sequence-{place}\" class=\"sequence\">\n");
+        if let Some(index) = report.timelines.iter().position(|one| one.sequence == *name) {
+            let _ = writeln!(html, "<div class=\"timeline\" data-timeline=\"{index}\"></div>");
         }
-        html.push_str("</div>\n");
-    }
-    if html.is_empty() {
+        if let Some(strip) = report.strips.iter().find(|strip| strip.sequence == *name) {
+            html.push_str("<div class=\"strip\">\n");
+            for frame in &strip.frames {
+                html.push_str(&picture(report, name, frame));
+            }
+            html.push_str("</div>\n");
+        }
+        (*name, html + "</div>\n")
+    });
+    let html = panels(Choice::SelectOfAll("Sequence"), shown);
+    if report.strips.is_empty() {
         return html;
     }
-    format!("<p>The true box is white, dashed.</p>\n{html}")
+    format!(
+        "<p>The true box is white, dashed. Frames are those in which trackers begin to fail, and some between.</p>\n{html}"
+    )
 }
 
 fn picture(report: &Report, sequence: &str, frame: &StripFrame) -> String {
     let (width, height) = (frame.width, frame.height);
     let mut html = format!(
-        "<figure><svg viewBox=\"0 0 {width} {height}\" role=\"img\" aria-label=\"{} frame {}\">\
+        "<figure data-frame=\"{}\"><svg viewBox=\"0 0 {width} {height}\" role=\"img\" aria-label=\"{} frame {}\">\
          <image width=\"{width}\" height=\"{height}\" preserveAspectRatio=\"none\" \
          href=\"data:image/jpeg;base64,{}\"/>",
+        frame.number,
         escape(sequence),
         frame.number,
         STANDARD.encode(&frame.jpeg)

@@ -20,6 +20,8 @@ pub struct ResultFile {
     pub separators: Separators,
     /// The row of the truth, counted from 0, that the first row is of, if a record beside the file tells.
     pub start: Option<usize>,
+    /// The column of scores, if the file has one.
+    pub scores: Option<Vec<f64>>,
     /// How the file was read, if not as plain `x,y,w,h` rows.
     pub read_as: Option<String>,
     /// Whether the first row, which is NaN then, stands for the box that the tracker was given, whatever it is.
@@ -54,7 +56,7 @@ impl ResultFile {
         let bytes = fs::read(path).map_err(|source| ResultsError::Io { path: path.to_owned(), source })?;
         // What is all text, as nearly every file is, is told fastest so.
         let text = str::from_utf8(&bytes).map_or_else(|_| String::from_utf8_lossy(&bytes), Cow::Borrowed);
-        let rows::Rows { rows, read_as, first_is_given } = rows::parse(&text, path)?;
+        let rows::Rows { rows, scores, read_as, first_is_given } = rows::parse(&text, path)?;
         if rows.is_empty() {
             return Err(ResultsError::Empty { path: path.to_owned() });
         }
@@ -63,7 +65,7 @@ impl ResultFile {
         }
         let start = record.and_then(|record| record.start());
         let separators = Separators { other: read_as.is_some(), ..Separators::of(&text) };
-        Ok(Self { rows, separators, start, read_as, first_is_given })
+        Ok(Self { rows, separators, start, scores, read_as, first_is_given })
     }
 }
 
@@ -85,19 +87,38 @@ impl Separators {
 pub(crate) fn seconds_beside(result: &Path) -> Result<Option<Vec<f64>>, ResultsError> {
     let stem = result.file_stem().unwrap_or_default().to_string_lossy();
     let path = result.with_file_name(format!("{stem}_time.txt"));
-    if path.exists() { read_seconds(&path).map(Some) } else { Ok(None) }
+    if path.exists() { read_seconds(&path, 0).map(Some) } else { Ok(None) }
 }
 
-/// Reads a file of seconds, a frame a line.
-pub(super) fn read_seconds(path: &Path) -> Result<Vec<f64>, ResultsError> {
+/// Reads a file of seconds, a frame a line; where a line has several, for repetitions, that of the repetition at `column`.
+pub(super) fn read_seconds(path: &Path, column: usize) -> Result<Vec<f64>, ResultsError> {
     let text = fs::read(path).map_err(|source| ResultsError::Io { path: path.to_owned(), source })?;
-    parse_seconds(&String::from_utf8_lossy(&text), path)
+    parse_seconds(&String::from_utf8_lossy(&text), path, column)
 }
 
-fn parse_seconds(text: &str, path: &Path) -> Result<Vec<f64>, ResultsError> {
+/// Reads a file of confidences, a frame a line. A blank line, as VOT has for the frame of the box given, is NaN.
+pub(super) fn read_confidences(path: &Path) -> Result<Vec<f64>, ResultsError> {
+    let bytes = fs::read(path).map_err(|source| ResultsError::Io { path: path.to_owned(), source })?;
+    let text = String::from_utf8_lossy(&bytes);
+    let number = |(index, line): (usize, &str)| {
+        let word = line.trim();
+        if word.is_empty() {
+            return Ok(f64::NAN);
+        }
+        word.parse::<f64>().map_err(|_| ResultsError::Confidence {
+            path: path.to_owned(),
+            line: index + 1,
+            text: line.to_owned(),
+        })
+    };
+    text.trim_end().lines().enumerate().map(number).collect()
+}
+
+fn parse_seconds(text: &str, path: &Path, column: usize) -> Result<Vec<f64>, ResultsError> {
     let number =
         |(index, line): (usize, &str)| {
-            let seconds = line.trim().trim_end_matches(',').parse::<f64>().ok();
+            let columns: Vec<&str> = line.trim().trim_end_matches(',').split(',').map(str::trim).collect();
+            let seconds = columns.get(column).or(columns.first()).and_then(|word| word.parse::<f64>().ok());
             seconds.filter(|seconds| seconds.is_finite() && *seconds >= 0.0).ok_or_else(|| {
                 ResultsError::Time { path: PathBuf::from(path), line: index + 1, text: line.to_owned() }
             })

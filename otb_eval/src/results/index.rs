@@ -16,7 +16,10 @@ use crate::{
 };
 
 /// Files beside results that are none.
-const NOT_RESULTS: [&str; 2] = ["_time", "_object_presence_scores"];
+const NOT_RESULTS: [&str; 3] = ["_time", "_object_presence_scores", "_confidence"];
+
+/// What pytracking puts before the names of UAV123 and of Need for Speed.
+const PREFIXES: [&str; 2] = ["uav_", "nfs_"];
 
 /// How files of ground truth are called, which lie in folders as results do.
 const TRUTH: &str = "groundtruth";
@@ -100,6 +103,9 @@ fn tracker_in(name: String, folder: &Path) -> Result<Option<TrackerResults>, Res
         }
     }
     if seeds.is_empty() {
+        seeds = repetitions_in(folder)?;
+    }
+    if seeds.is_empty() {
         seeds.push(seed_in(0, folder)?);
     }
     seeds.retain(|seed| !seed.files.is_empty() || !seed.failures.is_empty());
@@ -127,20 +133,54 @@ fn seed_in(seed: u64, folder: &Path) -> Result<SeedResults, ResultsError> {
         {
             let name = format!("{stem}_time.txt");
             let times = [folder.join(&name), folder.join("times").join(&name)];
+            let confidences = ["_confidence.txt", "_object_presence_scores.txt", "_confidence.value"]
+                .map(|end| folder.join(format!("{stem}{end}")));
             let listed = Listed {
                 path: path.clone(),
                 has_record: there.contains(Record::path(path).as_path()),
-                times: times.into_iter().find(|path| there.contains(path.as_path())),
+                times: times.into_iter().find(|path| there.contains(path.as_path())).map(|path| (path, 0)),
+                confidences: confidences.into_iter().find(|path| there.contains(path.as_path())),
             };
-            files.insert(in_the_benchmarks_spelling(stem), listed);
+            files.insert(listed_as(stem), listed);
         }
     }
     Ok(SeedResults { seed, files, failures })
 }
 
-/// `Jogging_1` is the sequence Jogging-1 to some toolkits; `Couple_left` is Couple's segment.
-fn in_the_benchmarks_spelling(stem: &str) -> String {
-    catalogue::find(stem).map_or_else(|| stem.to_owned(), |known| known.name.to_owned())
+/// `TRACKER/SEQ/SEQ_001.txt`, as the GOT-10k toolkit and VOT have it: repetition K is seed K. Nothing if it is not laid out so.
+fn repetitions_in(folder: &Path) -> Result<Vec<SeedResults>, ResultsError> {
+    let mut seeds: BTreeMap<u64, SeedResults> = BTreeMap::new();
+    for (sequence, subfolder) in folders_in(folder)? {
+        let paths = entries(&subfolder)?;
+        let is_there =
+            |name: &str| paths.iter().find(|path| path.file_name().is_some_and(|one| one == name)).cloned();
+        let number_of = |path: &PathBuf| {
+            let name = path.file_name()?.to_str()?;
+            let digits = name.strip_prefix(&sequence)?.strip_prefix('_')?.strip_suffix(".txt")?;
+            if digits.len() == 3 { digits.parse::<u64>().ok() } else { None }
+        };
+        for (path, number) in paths.iter().filter_map(|path| Some((path, number_of(path)?))) {
+            let all_times = is_there(&format!("{sequence}_time.txt"));
+            let times = all_times.map(|path| (path, number.saturating_sub(1) as usize));
+            let own_times = is_there(&format!("{sequence}_{number:03}_time.value")).map(|path| (path, 0));
+            let listed = Listed {
+                path: path.clone(),
+                has_record: false,
+                times: times.or(own_times),
+                confidences: is_there(&format!("{sequence}_{number:03}_confidence.value")),
+            };
+            let empty = || SeedResults { seed: number, files: BTreeMap::new(), failures: BTreeMap::new() };
+            seeds.entry(number).or_insert_with(empty).files.insert(listed_as(&sequence), listed);
+        }
+    }
+    Ok(seeds.into_values().collect())
+}
+
+/// How a result is known whatever its toolkit calls the sequence: `Jogging_1` is Jogging-1 to some, `uav_person1` is person1 to
+/// pytracking; `Couple_left` is Couple's segment.
+pub(crate) fn listed_as(stem: &str) -> String {
+    let plain = PREFIXES.iter().find_map(|prefix| stem.strip_prefix(prefix)).unwrap_or(stem);
+    catalogue::find(plain).map_or_else(|| plain.to_owned(), |known| known.name.to_owned())
 }
 
 #[derive(Deserialize)]

@@ -20,6 +20,7 @@ use crate::{
 
 pub(crate) use file::seconds_beside;
 pub use file::{ResultFile, Separators};
+pub(crate) use index::listed_as;
 
 /// Results that cannot be used.
 #[derive(Debug, Error)]
@@ -101,6 +102,16 @@ pub enum ResultsError {
         /// The line as it stands.
         text: String,
     },
+    /// A line of confidences that is no number.
+    #[error("{path}, line {line}: `{}` is no confidence; write a number a line", printable(text), path = path.display())]
+    Confidence {
+        /// The file.
+        path: PathBuf,
+        /// The line, counted from 1.
+        line: usize,
+        /// The line as it stands.
+        text: String,
+    },
     /// `run.json` cannot be read.
     #[error(transparent)]
     Run(#[from] StoreError),
@@ -149,7 +160,9 @@ pub struct SeedResults {
 struct Listed {
     path: PathBuf,
     has_record: bool,
-    times: Option<PathBuf>,
+    /// The file of seconds, and which of its columns.
+    times: Option<(PathBuf, usize)>,
+    confidences: Option<PathBuf>,
 }
 
 impl Results {
@@ -227,7 +240,7 @@ impl SeedResults {
             let record = if *has_record { Record::beside(path)? } else { None };
             ResultFile::with_record(path, record)
         };
-        self.files.get(&stem(sequence, label)).map(read)
+        self.files.get(&listed_as(&stem(sequence, label))).map(read)
     }
 
     /// Reads the seconds that each frame of a segment took, `init` first; `None` if that is not known.
@@ -239,8 +252,18 @@ impl SeedResults {
         sequence: &str,
         label: Option<&str>,
     ) -> Option<Result<Vec<f64>, ResultsError>> {
-        let path = self.files.get(&stem(sequence, label))?.times.as_ref()?;
-        Some(file::read_seconds(path))
+        let (path, column) = self.files.get(&listed_as(&stem(sequence, label)))?.times.as_ref()?;
+        Some(file::read_seconds(path, *column))
+    }
+
+    /// Reads how sure the tracker was in each frame of a one-pass result; `None` if that is not known. A NaN is a frame of which
+    /// nothing is said.
+    ///
+    /// # Errors
+    /// [`ResultsError`], naming the file and line.
+    pub fn read_confidences(&self, sequence: &str) -> Option<Result<Vec<f64>, ResultsError>> {
+        let path = self.files.get(&listed_as(sequence))?.confidences.as_ref()?;
+        Some(file::read_confidences(path))
     }
 
     /// Stems `SEQ[_SEGMENT]` of all results.

@@ -25,6 +25,8 @@ const SHOWN: usize = 80;
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Rows {
     pub(super) rows: Vec<Rect>,
+    /// The column of scores, if there is one.
+    pub(super) scores: Option<Vec<f64>>,
     /// How the file was read, if not as plain `x,y,w,h`.
     pub(super) read_as: Option<String>,
     /// Whether the first row stands for the box that the tracker was given, whatever it is.
@@ -92,6 +94,7 @@ fn otherwise(text: &str) -> Result<Rows, Option<Refusal>> {
     if table.iter().any(|row| row.len() != width) {
         return Err(None);
     }
+    let mut scores = None;
     let mut rows = if width == 8 && header.is_none() {
         told.push("the upright box around each polygon".to_owned());
         table.iter().map(|row| around(row)).collect()
@@ -110,12 +113,15 @@ fn otherwise(text: &str) -> Result<Rows, Option<Refusal>> {
                 told.push(format!("{name}, left out"));
             }
         }
+        let place = columns.iter().position(|column| *column == Column::Score);
+        scores = place.map(|place| table.iter().map(|row| row[place]).collect());
         boxes(&table, &columns).ok_or(None)?
     };
     if first_is_given {
         rows.insert(0, Rect::new(f64::NAN, f64::NAN, f64::NAN, f64::NAN));
+        scores.iter_mut().for_each(|scores: &mut Vec<f64>| scores.insert(0, f64::NAN));
     }
-    Ok(Rows { rows, read_as: Some(told.join("; ")), first_is_given })
+    Ok(Rows { rows, scores, read_as: Some(told.join("; ")), first_is_given })
 }
 
 /// The columns that a header names; `None` if a word is unknown, or a side of the box is missing.

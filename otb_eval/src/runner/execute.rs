@@ -19,7 +19,7 @@ use crate::{
 };
 
 /// What a job gives.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Recording {
     /// The boxes, a row a frame, with the truth's origin; the first is the box given.
     pub rows: Vec<Rect>,
@@ -27,11 +27,28 @@ pub struct Recording {
     pub seconds: Vec<f64>,
     /// Seconds from each image sent to a tracker in another process to its answer.
     pub round_trips: Option<Vec<f64>>,
+    /// How sure the tracker was of each box, in [0, 1].
+    pub confidences: Vec<f64>,
+    /// The number of the first pixel in the truth's boxes.
+    pub origin: Origin,
+}
+
+impl Default for Recording {
+    fn default() -> Self {
+        Self {
+            rows: Vec::new(),
+            seconds: Vec::new(),
+            round_trips: None,
+            confidences: Vec::new(),
+            origin: Origin::One,
+        }
+    }
 }
 
 impl Observer for Recording {
     fn on_frame(&mut self, event: &FrameEvent<'_>) -> Result<(), OutputError> {
-        self.rows.push(Origin::One.from_frame(event.estimate.box_in_frame));
+        self.rows.push(self.origin.from_frame(event.estimate.box_in_frame));
+        self.confidences.push(event.estimate.confidence);
         self.seconds.push(event.tracking_time.as_secs_f64());
         Ok(())
     }
@@ -70,12 +87,13 @@ fn track(job: &Job, factory: &dyn TrackerFactory, stop: &AtomicBool) -> Result<R
         target: job.folder.target,
         start: Some(first),
         end: Some(first + job.frames - 1),
-        origin: Some(Origin::One),
+        origin: Some(job.folder.origin),
+        ..OpenOptions::default()
     };
     let mut sequence =
         open(&job.folder.path.to_string_lossy(), &options).map_err(|error| failed(&of_sequence(&error)))?;
-    let mut recording = Recording::default();
-    let first_box = Origin::One.to_frame(job.segment.first_box);
+    let mut recording = Recording { origin: job.folder.origin, ..Recording::default() };
+    let first_box = job.folder.origin.to_frame(job.segment.first_box);
     run(sequence.source.as_mut(), &[], tracker.as_mut(), first_box, &mut [&mut recording], stop).map_err(
         |error| match *error.failure {
             RunFailure::Interrupted => JobFailure::Stopped,

@@ -74,6 +74,11 @@ impl Job {
         PathBuf::from(format!("{}.external.json", self.id()))
     }
 
+    /// The path of the confidence of each frame, below the results' folder.
+    pub fn confidence_path(&self) -> PathBuf {
+        PathBuf::from(format!("{}_confidence.txt", self.id()))
+    }
+
     /// The path of what is told of a failure, below the results' folder.
     pub fn failure_path(&self) -> PathBuf {
         PathBuf::from(format!("{}.failed.json", self.id()))
@@ -104,7 +109,13 @@ pub(crate) mod tests {
                 first_box: Rect::new(1.0, 2.5, 3.0, 4.0),
             },
             frames: 301,
-            folder: FrameFolder { path: "otb/Jogging".into(), target: Some(1), first_frame: 1 },
+            folder: FrameFolder {
+                path: "otb/Jogging".into(),
+                target: Some(1),
+                first_frame: 1,
+                origin: infopart::geometry::Origin::One,
+                ground_truth: "otb/Jogging/groundtruth_rect.1.txt".into(),
+            },
         }
     }
 

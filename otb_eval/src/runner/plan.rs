@@ -77,7 +77,7 @@ pub enum PlanProblem {
         name: String,
     },
     /// Only the boxes of the sequence are known.
-    #[error("{name}: only its boxes are known; give its OTB folder with --data")]
+    #[error("{name}: only its boxes are known; give its folder with --data")]
     NoFrames {
         /// The sequence.
         name: String,
@@ -184,6 +184,7 @@ mod tests {
             truth: vec![infopart::geometry::Rect::new(1.0, 1.0, 2.0, 2.0); 3],
             hidden: vec![],
             frames: None,
+            annotations: crate::dataset::Annotations::default(),
         };
         let options = PlanOptions {
             protocol: Protocol::Ope,

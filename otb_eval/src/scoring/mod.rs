@@ -5,6 +5,8 @@
 //! 2. a tracker's curves are the unweighted mean of its sequences' curves, for each seed,
 //! 3. what is reported is the mean over seeds, and the spread over them.
 
+mod certainty;
+mod long_term;
 mod measure;
 mod problem;
 mod segments;
@@ -20,10 +22,12 @@ use crate::{
     catalogue::{self, Attribute, AttributeSource},
     dataset::{Dataset, Target},
     protocol::Protocol,
-    results::{Results, SeedResults, TrackerResults},
+    results::{Results, SeedResults, TrackerResults, listed_as},
     toolkits::Rules,
 };
 
+pub use certainty::{Against, against, certainty, common_seeds, compare_scores};
+pub use long_term::{LongTermPoint, LongTermScores, has_absence, long_term};
 pub use measure::{Measure, UnknownMeasure};
 pub use problem::{ScoreProblem, Weight};
 pub use segments::{Segment, segments_of, start_of};
@@ -89,6 +93,10 @@ fn targets<'a>(
             problems.push(ScoreProblem::Protocol { sequence: target.name.clone(), source });
             false
         }
+        _ if target.annotations.first_only => {
+            problems.push(ScoreProblem::FirstOnly { sequence: target.name.clone() });
+            false
+        }
         _ => true,
     };
     dataset.targets.iter().filter(|target| wanted.contains(&target.name)).filter(is_scorable).collect()
@@ -113,7 +121,7 @@ fn sequences_with_results(
         let segments = seeds.flat_map(|seed| segments_of(protocol, target, seed).unwrap_or_default());
         let labels: BTreeSet<Option<String>> = segments.map(|(label, _)| label).collect();
         for label in labels {
-            let stem = crate::runner::stem(&target.name, label.as_deref());
+            let stem = listed_as(&crate::runner::stem(&target.name, label.as_deref()));
             if stems.contains(stem.as_str()) {
                 wanted.insert(target.name.clone());
                 explained.insert(stem);
@@ -137,7 +145,7 @@ fn tracker_scores(
         jobs.par_iter().map(|(target, seed)| sequence::score(tracker, seed, target, options)).collect();
     let (mut curves, mut problems, mut speeds) = (Vec::new(), Vec::new(), Vec::new());
     for outcome in outcomes {
-        speeds.push(outcome.frames_per_second);
+        speeds.push(outcome.frames_per_second.map(|speed| (speed, outcome.timed)));
         curves.push(outcome.curves);
         problems.extend(outcome.problems);
     }

@@ -37,6 +37,14 @@ pub enum ScoreProblem {
         /// Why not.
         source: ProtocolError,
     },
+    /// A sequence of which only the first box is known.
+    #[error(
+        "{sequence}: only its first box is known: the benchmark's server scores it; make what it takes with `otb_eval submit`"
+    )]
+    FirstOnly {
+        /// The sequence.
+        sequence: String,
+    },
     /// A tracker has no result on a sequence.
     #[error("{tracker}, {stem}: no result (seed {seed}){}; run it, or leave the sequence out with --sequences", reason.as_ref().map(|reason| format!(": {reason}")).unwrap_or_default())]
     Missing {
@@ -154,7 +162,7 @@ impl ScoreProblem {
     /// The sequence that has no ground truth, or the `SEQ[_SEGMENT]` that it is about; `None` for other problems.
     pub fn subject(&self) -> Option<&str> {
         match self {
-            Self::NoTruth { sequence } => Some(sequence),
+            Self::NoTruth { sequence } | Self::FirstOnly { sequence } => Some(sequence),
             Self::Missing { stem, .. }
             | Self::Start { stem, .. }
             | Self::Lengths { stem, .. }

@@ -8,7 +8,7 @@ use crate::{
     protocol::{Protocol, unscaled},
     results::{ResultFile, SeedResults, TrackerResults},
     runner::stem,
-    toolkits::{Curves, Hits, evaluate},
+    toolkits::{Curves, FrameNotes, Hits, evaluate_with},
 };
 
 /// What became of a sequence.
@@ -16,6 +16,8 @@ pub(super) struct SequenceOutcome {
     /// `None` if a segment is missing, unreadable or crashes the toolkit; times that cannot be read cost no score.
     pub(super) curves: Option<Curves>,
     pub(super) frames_per_second: Option<f64>,
+    /// Frames with a time.
+    pub(super) timed: usize,
     pub(super) problems: Vec<ScoreProblem>,
 }
 
@@ -68,7 +70,18 @@ pub(super) fn score(
     let curves = total.filter(|_| is_whole).map(|hits| hits.curves(&options.rules));
     let frames_per_second =
         if options.rules.mean_of_rates() { mean_of_rates(&seconds) } else { frames_per_second(&updates) };
-    SequenceOutcome { curves, frames_per_second, problems }
+    let timed = seconds.iter().filter(|second| **second > 0.0).count();
+    SequenceOutcome { curves, frames_per_second, timed, problems }
+}
+
+/// What is said of the frames from a row of the truth on.
+fn notes_from(target: &Target, start: usize) -> FrameNotes<'_> {
+    let said = &target.annotations;
+    FrameNotes {
+        absent: said.absent.get(start..).unwrap_or_default(),
+        cover: said.cover.get(start..).unwrap_or_default(),
+        resolution: said.resolution,
+    }
 }
 
 struct Scored {
@@ -121,7 +134,7 @@ fn segment_hits(
     options
         .rules
         .check_separators(file.separators)
-        .and_then(|()| evaluate(&options.rules, truth, &file.rows))
+        .and_then(|()| evaluate_with(&options.rules, truth, notes_from(target, start), &file.rows))
         .map(|hits| Scored { hits, rows: file.rows.len(), start, notes })
         .map_err(|source| ScoreProblem::Crash { tracker, stem, source })
 }

@@ -4,9 +4,9 @@ use serde::Serialize;
 
 use crate::{
     catalogue::{Attribute, AttributeSource},
-    compare::{deviation, mean},
     protocol::Protocol,
     results::TrackerResults,
+    statistics::{deviation, mean},
     toolkits::{Curves, Rules, Toolkit},
 };
 
@@ -69,6 +69,9 @@ pub struct SequenceScores {
     pub scores: Option<Scores>,
     /// Updates a second, the mean over seeds; `None` without times.
     pub frames_per_second: Option<f64>,
+    /// Frames with a time.
+    #[serde(skip)]
+    pub timed: usize,
     /// Each seed's curves, in the order of the tracker's seeds; `None` where it could not be scored.
     #[serde(skip)]
     pub curves: Vec<Option<Curves>>,
@@ -83,6 +86,8 @@ pub struct Scores {
     pub precision_20: Spread,
     /// Share of frames with an overlap above 0.5.
     pub success_50: Spread,
+    /// Share of frames with an overlap above 0.75.
+    pub success_75: Spread,
     /// Normalised precision at 0.2, which toolkits print; `None` where the toolkit has none.
     pub normalised_precision_20: Option<Spread>,
     /// Area under the normalised precision curve: the mean of its 51 values.
@@ -121,6 +126,7 @@ impl Scores {
             auc: spread(Curves::auc),
             precision_20: spread(Curves::precision_at_20),
             success_50: spread(Curves::success_at_half),
+            success_75: spread(Curves::success_at_three_quarters),
             normalised_precision_20: optional(Curves::normalised_precision_at_02),
             normalised_precision_area: optional(Curves::normalised_precision_area),
             mean_overlap: spread(|curves| curves.mean_overlap),
@@ -129,13 +135,16 @@ impl Scores {
 }
 
 impl SequenceScores {
-    pub(super) fn new(sequence: &str, curves: Vec<Option<Curves>>, speeds: &[Option<f64>]) -> Self {
+    /// `speeds` are each seed's frames a second, and of how many frames.
+    pub(super) fn new(sequence: &str, curves: Vec<Option<Curves>>, speeds: &[Option<(f64, usize)>]) -> Self {
         let present: Vec<Curves> = curves.iter().flatten().cloned().collect();
-        let speeds: Vec<f64> = speeds.iter().copied().flatten().collect();
+        let timed = speeds.iter().flatten().map(|(_, timed)| timed).sum();
+        let speeds: Vec<f64> = speeds.iter().flatten().map(|(speed, _)| *speed).collect();
         Self {
             sequence: sequence.to_owned(),
             scores: Scores::of(&present),
             frames_per_second: (!speeds.is_empty()).then(|| mean(speeds.into_iter())),
+            timed,
             curves,
         }
     }
@@ -160,14 +169,18 @@ impl TrackerScores {
         });
         let attributes = by_attribute.collect();
         let (overall, curves) = of(&|_| true).unzip();
-        let speeds: Vec<f64> = sequences.iter().filter_map(|row| row.frames_per_second).collect();
+        let weight = |row: &SequenceScores| if rules.pools_frames() { row.timed as f64 } else { 1.0 };
+        let speeds: Vec<(f64, f64)> =
+            sequences.iter().filter_map(|row| Some((row.frames_per_second?, weight(row)))).collect();
+        let weights: f64 = speeds.iter().map(|(_, weight)| weight).sum();
+        let speed = speeds.iter().map(|(speed, weight)| speed * weight).sum::<f64>() / weights;
         Self {
             tracker: tracker.name.clone(),
             seeds,
             overall,
             scored: sequences.iter().filter(|row| row.scores.is_some()).count(),
             attributes,
-            frames_per_second: (!speeds.is_empty()).then(|| mean(speeds.into_iter())),
+            frames_per_second: (weights > 0.0).then_some(speed),
             curves,
             sequences,
         }

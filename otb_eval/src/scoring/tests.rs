@@ -8,8 +8,13 @@ use crate::toolkits::Toolkit;
 const BOX: Rect = Rect::new(10.0, 20.0, 30.0, 40.0);
 
 fn dataset(names: &[&str]) -> Dataset {
-    let target =
-        |name: &&str| Target { name: (*name).into(), truth: vec![BOX; 60], hidden: vec![], frames: None };
+    let target = |name: &&str| Target {
+        name: (*name).into(),
+        truth: vec![BOX; 60],
+        hidden: vec![],
+        frames: None,
+        annotations: crate::dataset::Annotations::default(),
+    };
     Dataset { targets: names.iter().map(target).collect() }
 }
 

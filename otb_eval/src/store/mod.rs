@@ -85,18 +85,21 @@ impl Store {
         identity.claim(&folder, machine)
     }
 
-    /// Keeps a job's boxes, times and record, the boxes last, since they say that the job is done.
+    /// Keeps a job's boxes, times, confidences and record, the boxes last, since they say that the job is done.
     ///
     /// # Errors
     /// [`StoreError::Io`].
     pub fn keep(&self, job: &Job, recording: &Recording) -> Result<(), StoreError> {
-        let (mut rows, mut seconds) = (String::new(), String::new());
+        let (mut rows, mut seconds, mut confidences) = (String::new(), String::new(), String::new());
         for row in &recording.rows {
             // Writing to a String cannot fail.
             let _ = writeln!(rows, "{},{},{},{}", row.x, row.y, row.w, row.h);
         }
         for second in &recording.seconds {
             let _ = writeln!(seconds, "{second:.8}");
+        }
+        for confidence in &recording.confidences {
+            let _ = writeln!(confidences, "{confidence}");
         }
         let record = Record::new(rows.as_bytes(), recording.rows.len(), Some(job.segment.start));
         self.write(&job.time_path(), &seconds)?;
@@ -105,6 +108,9 @@ impl Store {
             let times = if is_own { "the tracker's own" } else { "round trips" };
             let text = serde_json::json!({ "times": times, "round_trip_seconds": round_trips });
             self.write(&job.external_path(), &format!("{text}\n"))?;
+        }
+        if !confidences.is_empty() {
+            self.write(&job.confidence_path(), &confidences)?;
         }
         self.write(&Record::path(&job.result_path()), &record.text())?;
         self.write(&job.result_path(), &rows)?;

@@ -29,7 +29,13 @@ fn job() -> Job {
         sequence: "Crossing".into(),
         segment: Segment { label: None, start: 0, first_box },
         frames: 2,
-        folder: FrameFolder { path: "otb/Crossing".into(), target: None, first_frame: 1 },
+        folder: FrameFolder {
+            path: "otb/Crossing".into(),
+            target: None,
+            first_frame: 1,
+            origin: infopart::geometry::Origin::One,
+            ground_truth: "otb/Crossing/groundtruth_rect.txt".into(),
+        },
     }
 }
 
@@ -41,6 +47,8 @@ fn results_stand_where_the_layout_says_with_every_digit() {
         rows: vec![Rect::new(1.0, 2.5, 3.0, 4.0), Rect::new(1.0 / 3.0, -7.0, 10.25, 16.0)],
         seconds: vec![0.25, 0.001_234_567_89],
         round_trips: Some(vec![0.5, 0.25]),
+        confidences: vec![1.0, 1.0 / 3.0],
+        ..Recording::default()
     };
     store.keep_failure(&job(), "no luck").unwrap();
     let failure = folder.path().join("ope/infopart/seed_2/Crossing.failed.json");
@@ -49,6 +57,7 @@ fn results_stand_where_the_layout_says_with_every_digit() {
     store.keep(&job(), &recording).unwrap();
     let read = |name: &str| fs::read_to_string(folder.path().join("ope/infopart/seed_2").join(name)).unwrap();
     assert_eq!(read("Crossing.txt"), "1,2.5,3,4\n0.3333333333333333,-7,10.25,16\n");
+    assert_eq!(read("Crossing_confidence.txt"), "1\n0.3333333333333333\n");
     assert_eq!(read("Crossing_time.txt"), "0.25000000\n0.00123457\n");
     let external: serde_json::Value = serde_json::from_str(&read("Crossing.external.json")).unwrap();
     let expected = serde_json::json!({ "times": "the tracker's own", "round_trip_seconds": [0.5, 0.25] });
@@ -67,7 +76,7 @@ fn what_is_not_the_result_that_was_written_is_damaged() {
     let recording = Recording {
         rows: vec![Rect::new(1.0, 2.5, 3.0, 4.0), Rect::new(2.0, 2.5, 3.0, 45.0)],
         seconds: vec![0.25, 0.5],
-        round_trips: None,
+        ..Recording::default()
     };
     let damage = || match store.kept(&job()) {
         Kept::Damaged(damage) => damage,

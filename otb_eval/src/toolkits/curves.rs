@@ -10,6 +10,8 @@ use super::{
 
 /// Index of the overlap threshold 0.5.
 const HALF: usize = 10;
+/// Index of the overlap threshold 0.75.
+const THREE_QUARTERS: usize = 15;
 /// Index of the normalised threshold 0.2.
 const NORMALISED_02: usize = 20;
 
@@ -55,6 +57,7 @@ impl Hits {
             precision: self.precision.map(share),
             normalised: self.normalised.map(|hits| hits.map(share)),
             mean_overlap: self.overlap_sum / frames as f64,
+            frames: self.frames,
         }
     }
 }
@@ -129,6 +132,9 @@ pub struct Curves {
     pub normalised: Option<[f64; NORMALISED_THRESHOLDS]>,
     /// Mean overlap over all frames, those with an invalid truth counting as 0.
     pub mean_overlap: f64,
+    /// Frames that they are shares of.
+    #[serde(skip)]
+    pub frames: usize,
 }
 
 fn as_slice<S: serde::Serializer>(values: &[f64], serializer: S) -> Result<S::Ok, S::Error> {
@@ -158,6 +164,11 @@ impl Curves {
         self.success[HALF]
     }
 
+    /// Success at an overlap of 0.75.
+    pub fn success_at_three_quarters(&self) -> f64 {
+        self.success[THREE_QUARTERS]
+    }
+
     /// Area under the normalised precision curve: the plain mean of its 51 values.
     pub fn normalised_precision_area(&self) -> Option<f64> {
         self.normalised.map(|curve| curve.iter().sum::<f64>() / NORMALISED_THRESHOLDS as f64)
@@ -168,30 +179,42 @@ impl Curves {
         self.normalised.map(|curve| curve[NORMALISED_02])
     }
 
-    /// The mean of sequences' curves, each weighing the same; `None` of none. Some toolkits leave curves of zeros out.
+    /// The mean of sequences' curves, each weighing the same, or each frame where the rules have it so; `None` of none. Some toolkits
+    /// leave curves of zeros out.
     pub fn mean<'a>(rules: &Rules, sequences: impl Iterator<Item = &'a Self>) -> Option<Self> {
         let sequences: Vec<&Self> = sequences.collect();
         if sequences.is_empty() {
             return None;
         }
+        let weight = |one: &&Self| if rules.pools_frames { one.frames as f64 } else { 1.0 };
+        let weights: Vec<f64> = sequences.iter().map(weight).collect();
+        let total = weights.iter().sum::<f64>().max(f64::MIN_POSITIVE);
+        let mean_overlap =
+            sequences.iter().zip(&weights).map(|(one, weight)| one.mean_overlap * weight).sum::<f64>()
+                / total;
         let all_normalised: Option<Vec<_>> = sequences.iter().map(|one| one.normalised.as_ref()).collect();
         Some(Self {
-            success: mean_of(rules, sequences.iter().map(|one| &one.success)),
-            precision: mean_of(rules, sequences.iter().map(|one| &one.precision)),
-            normalised: all_normalised.map(|curves| mean_of(rules, curves.into_iter())),
-            mean_overlap: sequences.iter().map(|one| one.mean_overlap).sum::<f64>() / sequences.len() as f64,
+            success: mean_of(rules, &weights, sequences.iter().map(|one| &one.success)),
+            precision: mean_of(rules, &weights, sequences.iter().map(|one| &one.precision)),
+            normalised: all_normalised.map(|curves| mean_of(rules, &weights, curves.into_iter())),
+            mean_overlap,
+            frames: sequences.iter().map(|one| one.frames).sum(),
         })
     }
 }
 
-fn mean_of<'a, const N: usize>(rules: &Rules, curves: impl Iterator<Item = &'a [f64; N]>) -> [f64; N] {
-    let (mut total, mut count) = ([0.0; N], 0_usize);
-    for curve in curves {
-        if rules.drops_zero_curves && curve.iter().sum::<f64>() <= f64::EPSILON {
+fn mean_of<'a, const N: usize>(
+    rules: &Rules,
+    weights: &[f64],
+    curves: impl Iterator<Item = &'a [f64; N]>,
+) -> [f64; N] {
+    let (mut total, mut count) = ([0.0; N], 0.0);
+    for (curve, weight) in curves.zip(weights) {
+        if !rules.counts(curve) {
             continue;
         }
-        total.iter_mut().zip(curve).for_each(|(total, value)| *total += value);
-        count += 1;
+        total.iter_mut().zip(curve).for_each(|(total, value)| *total += value * weight);
+        count += weight;
     }
-    total.map(|total| total / count.max(1) as f64)
+    total.map(|total| if count > 0.0 { total / count } else { 0.0 })
 }

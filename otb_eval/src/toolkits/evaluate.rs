@@ -19,15 +19,49 @@ use super::{
 /// Stands for a row that the result does not have.
 const ABSENT: Rect = Rect::new(f64::NAN, f64::NAN, f64::NAN, f64::NAN);
 
+/// What a benchmark says of each frame besides the true box; each list is empty, or has an entry a row.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct FrameNotes<'a> {
+    /// Whether the target is absent.
+    pub absent: &'a [bool],
+    /// Its visible eighths.
+    pub cover: &'a [u8],
+    /// Width and height of the frames, to which rules that count what can be seen clip boxes.
+    pub resolution: Option<(usize, usize)>,
+}
+
+impl FrameNotes<'_> {
+    fn is_absent(&self, index: usize) -> bool {
+        self.absent.get(index).copied().unwrap_or(false)
+    }
+
+    fn is_visible(&self, index: usize) -> bool {
+        self.cover.get(index).is_none_or(|eighths| *eighths > 0)
+    }
+}
+
 /// Scores the rows of a result against those of the truth, both as they stand in their files.
 ///
 /// # Errors
 /// [`Crash`] where the toolkit itself would fail.
 pub fn evaluate(rules: &Rules, truth: &[Rect], result: &[Rect]) -> Result<Hits, Crash> {
+    evaluate_with(rules, truth, FrameNotes::default(), result)
+}
+
+/// As [`evaluate`], with what the benchmark says of the frames of the truth.
+///
+/// # Errors
+/// [`Crash`] where the toolkit itself would fail.
+pub fn evaluate_with(
+    rules: &Rules,
+    truth: &[Rect],
+    notes: FrameNotes<'_>,
+    result: &[Rect],
+) -> Result<Hits, Crash> {
     check_lengths(rules, truth, result)?;
     check_boxes(rules, truth, result)?;
     let mut histogram = Histogram::new(rules);
-    let (mut before, mut valid_frames) = (ABSENT, 0);
+    let (mut before, mut valid_frames, mut counted) = (ABSENT, 0, 0);
     let frames = frames(rules, truth.len(), result.len());
     for (index, &true_box) in truth.iter().enumerate().take(frames) {
         let row = match result.get(index) {
@@ -41,6 +75,18 @@ pub fn evaluate(rules: &Rules, truth: &[Rect], result: &[Rect]) -> Result<Hits, 
         if rules.toolkit == Toolkit::Jwlim && row.area() + true_box.area() == 0.0 {
             return Err(Crash::NoArea { toolkit: rules.toolkit, row: index + 1 });
         }
+        if rules.counts_visible && (index == 0 || !notes.is_visible(index)) {
+            continue;
+        }
+        counted += 1;
+        if rules.absent_is_miss && notes.is_absent(index) {
+            histogram.count(-1.0, f64::INFINITY, f64::INFINITY);
+            continue;
+        }
+        let (row, true_box) = match notes.resolution.filter(|_| rules.counts_visible) {
+            Some(size) => (clipped(row, size), clipped(true_box, size)),
+            None => (row, true_box),
+        };
         valid_frames += usize::from(is_valid(rules.valid_for_overlap, true_box));
         histogram.count(
             overlap(rules, row, true_box),
@@ -49,7 +95,7 @@ pub fn evaluate(rules: &Rules, truth: &[Rect], result: &[Rect]) -> Result<Hits, 
         );
     }
     Ok(histogram.hits(match rules.denominator {
-        Denominator::Frames => frames,
+        Denominator::Frames => counted,
         Denominator::ValidFrames => valid_frames,
     }))
 }
@@ -60,6 +106,7 @@ fn check_lengths(rules: &Rules, truth: &[Rect], result: &[Rect]) -> Result<(), C
     let fails = match rules.lengths {
         Lengths::Common | Lengths::Misses => false,
         Lengths::Fail => longer || shorter,
+        Lengths::FailIfShorter => shorter,
         Lengths::FailOnValid => {
             longer || truth[result.len()..].iter().any(|row| is_valid(rules.valid_for_overlap, *row))
         }
@@ -104,8 +151,19 @@ fn is_lost(rule: LostBoxes, row: Rect, true_box: Rect) -> bool {
 fn frames(rules: &Rules, truth: usize, result: usize) -> usize {
     match rules.lengths {
         Lengths::Common | Lengths::ResultsOrFail => truth.min(result),
-        Lengths::Fail | Lengths::FailOnValid | Lengths::Misses => truth,
+        Lengths::Fail | Lengths::FailIfShorter | Lengths::FailOnValid | Lengths::Misses => truth,
     }
+}
+
+/// A box in frames of that size as the GOT-10k toolkit clips it: its corner moves into the frame without its sides getting shorter by
+/// that, then its sides are cut at the far edges.
+fn clipped(row: Rect, (width, height): (usize, usize)) -> Rect {
+    let along = |start: f64, side: f64, end: f64| {
+        let start = start.max(0.0).min(end);
+        (start, side.max(0.0).min(end - start))
+    };
+    let ((x, w), (y, h)) = (along(row.x, row.w, width as f64), along(row.y, row.h, height as f64));
+    if has_nan(row) { row } else { Rect::new(x, y, w, h) }
 }
 
 fn is_valid(validity: Validity, true_box: Rect) -> bool {

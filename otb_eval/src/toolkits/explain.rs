@@ -84,6 +84,9 @@ impl Rules {
                 "intersection over union with right = x + w - 1 and a pixel added to each difference, which cancels"
             }
             OverlapFormula::ClippedAreas => "intersection over union of areas, limited to [0, 1]",
+            OverlapFormula::ClippedAreasEps if self.counts_visible => {
+                "intersection over union of areas + 2.2e-16 of the boxes clipped to the frame, limited to [0, 1]"
+            }
             OverlapFormula::ClippedAreasEps => {
                 "intersection over union of areas + 2.2e-16, limited to [0, 1]"
             }
@@ -92,6 +95,7 @@ impl Rules {
 
     fn first(&self) -> &'static str {
         match self.first_frame {
+            _ if self.counts_visible => "not counted",
             FirstFrame::AsGiven => "counted, as the result has it",
             FirstFrame::Truth => "counted, overwritten with the ground truth",
         }
@@ -114,9 +118,14 @@ impl Rules {
             (_, InvalidError::Hit) => ", else a HIT at every p",
             (_, InvalidError::Miss) => ", else a miss at every p",
         };
+        let absent = if self.absent_is_miss {
+            "; where the benchmark says that the target is out of sight, a miss at every t and p"
+        } else {
+            ""
+        };
         let nan = if self.refuses_nan_truth { "; a NaN in it is refused" } else { "" };
         format!(
-            "success: {}{miss}; precision: {}{error}{nan}",
+            "success: {}{miss}; precision: {}{error}{nan}{absent}",
             valid(self.valid_for_overlap),
             valid(self.valid_for_error)
         )
@@ -139,6 +148,7 @@ impl Rules {
         match self.lengths {
             Lengths::Common => "the rows that both have are scored",
             Lengths::Fail => "refused",
+            Lengths::FailIfShorter => "a shorter result is refused, a longer one cut",
             Lengths::FailOnValid => "refused, unless only rows with an invalid ground truth are missing",
             Lengths::ResultsOrFail => "a longer result is refused, of a shorter one its own rows are scored",
             Lengths::Misses => "a longer result is cut, rows that a shorter one lacks are misses",
@@ -147,6 +157,9 @@ impl Rules {
 
     fn share(&self) -> &'static str {
         match self.denominator {
+            Denominator::Frames if self.counts_visible => {
+                "frames after the first in which some of the target can be seen (cover.label above 0)"
+            }
             Denominator::Frames => "all frames scored, those with an invalid ground truth among them",
             Denominator::ValidFrames => "frames with a valid ground truth",
         }
@@ -162,12 +175,16 @@ impl Rules {
 
     fn speed(&self) -> &'static str {
         match self.mean_of_rates {
+            true if self.pools_frames => "mean of 1/t over all frames of all sequences with t > 0",
             true => "mean of 1/t over the frames with t > 0, the first among them; then over sequences",
             false => "updates over their seconds, without the first frame; then the mean over sequences",
         }
     }
 
     fn over_sequences(&self) -> String {
+        if self.pools_frames {
+            return "all frames of all sequences together, whatever sequence they are of".to_owned();
+        }
         let dropped = if self.drops_zero_curves { ", those with a curve of zeros left out" } else { "" };
         format!(
             "unweighted mean of the sequences' curves{dropped}; segments of TRE and SRE weigh by their frames"

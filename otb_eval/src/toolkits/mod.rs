@@ -14,12 +14,13 @@ mod thresholds;
 
 use std::{fmt, str::FromStr};
 
+use infopart::sequence::Benchmark;
 use serde::Serialize;
 use thiserror::Error;
 
 pub use crash::Crash;
 pub use curves::{Curves, Hits};
-pub use evaluate::evaluate;
+pub use evaluate::{FrameNotes, evaluate, evaluate_with};
 pub use reasons::{Reason, reasons};
 pub use rules::{
     Denominator, FirstFrame, InvalidError, Lengths, LostBoxes, Normalisation, OverlapFormula, Rules, Validity,
@@ -44,6 +45,12 @@ pub enum Toolkit {
     Got10k,
     /// pytracking's analysis.
     Pytracking,
+    /// LaSOT's rules, as pytracking has them: a hidden target is a miss.
+    Lasot,
+    /// UAV123's rules, as pytracking has them: a frame without a box is a hit in precision.
+    Uav,
+    /// GOT-10k's rules: average overlap over all frames in which the target can be seen.
+    AverageOverlap,
 }
 
 /// A toolkit that does not exist.
@@ -56,12 +63,37 @@ pub struct UnknownToolkit {
 
 impl Toolkit {
     /// All, the plain rules first.
-    pub const ALL: [Self; 7] =
+    pub const ALL: [Self; 10] = [
+        Self::Plain,
+        Self::Matlab,
+        Self::Jwlim,
+        Self::Pysot,
+        Self::Stvir,
+        Self::Got10k,
+        Self::Pytracking,
+        Self::Lasot,
+        Self::Uav,
+        Self::AverageOverlap,
+    ];
+
+    /// Those for OTB, the plain rules first.
+    pub const OTB: [Self; 7] =
         [Self::Plain, Self::Matlab, Self::Jwlim, Self::Pysot, Self::Stvir, Self::Got10k, Self::Pytracking];
 
-    /// The six that others wrote.
+    /// The six that others wrote for OTB.
     pub const SIX: [Self; 6] =
         [Self::Matlab, Self::Jwlim, Self::Pysot, Self::Stvir, Self::Got10k, Self::Pytracking];
+
+    /// The rules that users of a benchmark score by; `None` is OTB's layout.
+    pub const fn of(benchmark: Option<Benchmark>) -> Self {
+        match benchmark {
+            Some(Benchmark::Lasot) => Self::Lasot,
+            Some(Benchmark::Uav) => Self::Uav,
+            Some(Benchmark::Got10k) => Self::AverageOverlap,
+            Some(Benchmark::NeedForSpeed | Benchmark::TrackingNet) => Self::Pytracking,
+            _ => Self::Plain,
+        }
+    }
 
     /// The name in flags.
     pub const fn name(self) -> &'static str {
@@ -73,6 +105,9 @@ impl Toolkit {
             Self::Stvir => "stvir",
             Self::Got10k => "got10k",
             Self::Pytracking => "pytracking",
+            Self::Lasot => "lasot",
+            Self::Uav => "uav123",
+            Self::AverageOverlap => "got10k-ao",
         }
     }
 
@@ -86,6 +121,9 @@ impl Toolkit {
             Self::Stvir => "the toolkit inside STVIR/pysot",
             Self::Got10k => "the GOT-10k toolkit's OTB experiment",
             Self::Pytracking => "pytracking's analysis",
+            Self::Lasot => "LaSOT's rules, as pytracking has them",
+            Self::Uav => "UAV123's rules, as pytracking has them",
+            Self::AverageOverlap => "GOT-10k's own rules: AO and SR",
         }
     }
 }

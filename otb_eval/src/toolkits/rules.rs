@@ -34,6 +34,12 @@ pub struct Rules {
     pub(super) least_sequences_of_an_attribute: usize,
     pub(super) attributes: Option<AttributeSource>,
     pub(super) normalisation: Option<Normalisation>,
+    /// Whether a frame in which the benchmark says that the target is absent is a miss.
+    pub(super) absent_is_miss: bool,
+    /// Whether only the frames after the first count, and of those only the ones in which some of the target can be seen.
+    pub(super) counts_visible: bool,
+    /// Whether frames of all sequences weigh the same, instead of sequences.
+    pub(super) pools_frames: bool,
     /// Whether frames per second are the mean of each frame's, the first among them.
     pub(super) mean_of_rates: bool,
     /// Whether its reader takes tabs and spaces besides commas.
@@ -108,6 +114,8 @@ pub enum Lengths {
     Fail,
     /// It fails unless only rows with an invalid truth are missing.
     FailOnValid,
+    /// It fails if the result is shorter; a longer one is cut.
+    FailIfShorter,
     /// It fails if the result is longer, and scores as many rows as a shorter one has.
     ResultsOrFail,
     /// A longer result is cut, a shorter one gets rows that miss.
@@ -153,6 +161,9 @@ impl Toolkit {
             least_sequences_of_an_attribute: 1,
             attributes: Some(AttributeSource::Tb100Txt),
             normalisation: Some(Normalisation::Sides),
+            absent_is_miss: false,
+            counts_visible: false,
+            pools_frames: false,
             mean_of_rates: false,
             takes: (true, true),
         };
@@ -183,18 +194,28 @@ impl Toolkit {
                 takes: (false, false),
                 ..plain
             },
-            Self::Pytracking => Rules {
+            Self::Pytracking => plain.of_pytracking(),
+            Self::Lasot => Rules {
+                absent_is_miss: true,
+                refuses_nan_truth: false,
+                lengths: Lengths::FailIfShorter,
+                ..plain.of_pytracking()
+            },
+            Self::Uav => {
+                Rules { invalid_error: InvalidError::Hit, refuses_nan_truth: false, ..plain.of_pytracking() }
+            }
+            Self::AverageOverlap => Rules {
                 thresholds: &ARANGE,
-                overlap: OverlapFormula::Pixels,
-                first_frame: FirstFrame::Truth,
-                valid_for_overlap: Validity::FourPositive,
-                valid_for_error: Validity::FourPositive,
-                refuses_nan_truth: true,
-                lost_boxes: LostBoxes::ZeroCarriedElseRefused,
-                lengths: Lengths::Misses,
-                single_precision: true,
+                overlap: OverlapFormula::ClippedAreasEps,
+                valid_for_overlap: Validity::Any,
+                valid_for_error: Validity::Any,
+                lengths: Lengths::Fail,
                 attributes: None,
-                takes: (true, false),
+                normalisation: None,
+                counts_visible: true,
+                pools_frames: true,
+                mean_of_rates: true,
+                takes: (false, false),
                 ..plain
             },
         }
@@ -210,6 +231,23 @@ impl Rules {
             valid_for_error: Validity::FourPositive,
             invalid_error: InvalidError::Hit,
             normalisation: None,
+            ..self
+        }
+    }
+
+    fn of_pytracking(self) -> Self {
+        Self {
+            thresholds: &ARANGE,
+            overlap: OverlapFormula::Pixels,
+            first_frame: FirstFrame::Truth,
+            valid_for_overlap: Validity::FourPositive,
+            valid_for_error: Validity::FourPositive,
+            refuses_nan_truth: true,
+            lost_boxes: LostBoxes::ZeroCarriedElseRefused,
+            lengths: Lengths::Misses,
+            single_precision: true,
+            attributes: None,
+            takes: (true, false),
             ..self
         }
     }
@@ -244,9 +282,19 @@ impl Rules {
         self.mean_of_rates
     }
 
+    /// Whether frames of all sequences weigh the same, instead of sequences.
+    pub fn pools_frames(&self) -> bool {
+        self.pools_frames
+    }
+
     /// How many sequences must have an attribute for it to be reported.
     pub fn least_sequences_of_an_attribute(&self) -> usize {
         self.least_sequences_of_an_attribute
+    }
+
+    /// Whether a sequence's curve counts in the mean over sequences: some toolkits leave curves of zeros out.
+    pub fn counts(&self, curve: &[f64]) -> bool {
+        !self.drops_zero_curves || curve.iter().sum::<f64>() > f64::EPSILON
     }
 
     /// With frames of invalid truth left out of every share, as pytracking's `exclude_invalid_frames`.

@@ -37,7 +37,7 @@ fn an_overlap_of_exactly_065_is_a_success_at_065_only_for_matlab() {
 #[test]
 fn a_perfect_tracker_scores_twenty_of_twenty_one_everywhere() {
     let truth = walk(30);
-    for toolkit in Toolkit::ALL {
+    for toolkit in Toolkit::OTB {
         let curves = hits(toolkit, &truth, &truth).curves(&toolkit.rules());
         assert!((curves.auc() - 20.0 / 21.0).abs() < 1e-7, "{toolkit}");
         assert_eq!((curves.precision_at_20(), curves.success_at_half()), (1.0, 1.0));
@@ -49,7 +49,7 @@ fn a_perfect_tracker_scores_twenty_of_twenty_one_everywhere() {
 fn half_shifted_squares_overlap_by_a_seventh_in_every_formula() {
     let truth = [Rect::new(1.0, 1.0, 10.0, 10.0); 2];
     let result = [truth[0], Rect::new(6.0, 6.0, 10.0, 10.0)];
-    for toolkit in Toolkit::ALL {
+    for toolkit in Toolkit::OTB {
         let hits = hits(toolkit, &truth, &result);
         assert!((hits.overlap_sum - 1.0 - 1.0 / 7.0).abs() < 1e-12, "{toolkit}");
         assert_eq!(hits.success[2..4], [2, 1], "1/7 lies between 0.1 and 0.15");
@@ -62,7 +62,7 @@ fn the_first_row_counts_as_given_or_as_the_truth() {
     let truth = walk(4);
     let mut result = truth.clone();
     result[0].x += 100.0;
-    for toolkit in Toolkit::ALL {
+    for toolkit in Toolkit::OTB {
         let given = matches!(toolkit, Toolkit::Plain | Toolkit::Pysot | Toolkit::Stvir);
         assert_eq!(hits(toolkit, &truth, &result).success[0], if given { 3 } else { 4 }, "{toolkit}");
     }
@@ -78,7 +78,7 @@ fn lost_boxes_are_carried_scored_or_refused() {
     };
     let zero = with(Rect::new(0.0, 0.0, 0.0, 0.0));
     let nan = with(Rect::new(f64::NAN, f64::NAN, f64::NAN, f64::NAN));
-    for toolkit in Toolkit::ALL {
+    for toolkit in Toolkit::OTB {
         let carries = matches!(toolkit, Toolkit::Matlab | Toolkit::Pytracking);
         assert_eq!(hits(toolkit, &truth, &zero).success[0], if carries { 5 } else { 3 }, "{toolkit}");
     }
@@ -162,7 +162,7 @@ fn segments_weigh_by_their_frames() {
 fn readers_take_the_separators_they_take() {
     use crate::results::Separators;
     let takes = |toolkit: Toolkit, text| toolkit.rules().check_separators(Separators::of(text)).is_ok();
-    for toolkit in Toolkit::ALL {
+    for toolkit in Toolkit::OTB {
         assert!(takes(toolkit, "1,2,3,4\n"), "{toolkit}");
         assert_eq!(
             takes(toolkit, "1\t2\t3\t4\n"),
@@ -197,7 +197,38 @@ fn why_toolkits_differ_is_named() {
 fn unknown_toolkits_are_refused_with_a_list() {
     assert_eq!("MATLAB".parse(), Ok(Toolkit::Matlab));
     let message = "vot".parse::<Toolkit>().unwrap_err().to_string();
-    assert!(message.contains("`vot`") && message.contains("got10k, pytracking, all"), "{message}");
+    assert!(
+        message.contains("`vot`") && message.contains("got10k, pytracking, lasot, uav123, got10k-ao, all"),
+        "{message}"
+    );
+}
+
+#[test]
+fn data_sets_have_rules_for_frames_without_a_target() {
+    let truth = walk(6);
+    let seen = FrameNotes {
+        absent: &[false, false, true, false, false, false],
+        cover: &[8, 8, 0, 8, 0, 1],
+        resolution: Some((1000, 1000)),
+    };
+    let hits = |toolkit: Toolkit, result: &[Rect]| evaluate_with(&toolkit.rules(), &truth, seen, result);
+    let lasot = hits(Toolkit::Lasot, &truth).unwrap();
+    assert_eq!((lasot.frames, lasot.success[10], lasot.precision[20]), (6, 5, 5));
+    assert_eq!(lasot.normalised.unwrap()[50], 5);
+    let longer = [truth.clone(), truth.clone()].concat();
+    assert_eq!(hits(Toolkit::Lasot, &longer).unwrap(), lasot);
+    assert!(matches!(hits(Toolkit::Lasot, &truth[..5]), Err(Crash::Lengths { .. })));
+    // The first frame and the two of which nothing is seen do not count.
+    let overlaps = hits(Toolkit::AverageOverlap, &truth).unwrap();
+    assert_eq!((overlaps.frames, overlaps.success[15]), (3, 3));
+    assert!((overlaps.overlap_sum - 3.0).abs() < 1e-12);
+    // A corner outside moves in, and the sides stay: at -10 a width of 30 is still one of 30.
+    let outside = [truth[0], Rect::new(-10.0, 5.0, 30.0, 20.0)];
+    let inside = [truth[0], Rect::new(0.0, 5.0, 30.0, 20.0)];
+    let notes = FrameNotes { absent: &[], cover: &[], resolution: Some((100, 100)) };
+    let clipped = evaluate_with(&Toolkit::AverageOverlap.rules(), &inside, notes, &outside).unwrap();
+    assert!((clipped.overlap_sum - 1.0).abs() < 1e-12);
+    assert_eq!(hits(Toolkit::Uav, &truth).unwrap(), evaluate(&Toolkit::Uav.rules(), &truth, &truth).unwrap());
 }
 
 fn any_box() -> impl Strategy<Value = Rect> {
@@ -223,7 +254,7 @@ proptest! {
         let tied = overlaps.iter().any(|&overlap| near(overlap, 0.05) && overlap > 0.0 && overlap < 1.0)
             || errors.iter().any(|&error| near(error, 1.0) && error > 0.0);
         prop_assume!(!tied);
-        for toolkit in Toolkit::ALL {
+        for toolkit in Toolkit::OTB {
             let curves = hits(toolkit, &truth, &result).curves(&toolkit.rules());
             for (found, expected) in curves.success.iter().zip(success).chain(curves.precision.iter().zip(precision)) {
                 prop_assert!((found - expected).abs() < 1e-6, "{}", toolkit);
@@ -235,7 +266,7 @@ proptest! {
     fn no_pair_of_files_breaks_a_toolkit_down(
         truth in prop::collection::vec(odd_box(), 1..12), result in prop::collection::vec(odd_box(), 1..12)
     ) {
-        for toolkit in Toolkit::ALL {
+        for toolkit in Toolkit::OTB {
             if let Ok(hits) = evaluate(&toolkit.rules(), &truth, &result) {
                 prop_assert!(hits.success.is_sorted_by(|a, b| a >= b) && hits.precision.is_sorted());
                 prop_assert!(hits.success[0] <= hits.frames);

@@ -3,9 +3,11 @@
 use std::{
     ffi::OsString,
     io::{self, BufReader},
-    path::Path,
-    process::{Child, ChildStdout, Command, Stdio},
-    time::Duration,
+    path::{Path, PathBuf},
+    process::{Child, ChildStdout, Command, ExitStatus, Stdio},
+    sync::{Arc, Mutex, PoisonError},
+    thread,
+    time::{Duration, Instant},
 };
 
 use super::{super::SequenceError, log::LogReader, ppm::read_ppm};
@@ -14,6 +16,9 @@ use crate::frame::Frame;
 /// The option that makes ffmpeg neither drop nor repeat frames, new and old spelling.
 const NO_RESAMPLING: [&str; 2] = ["-fps_mode", "-vsync"];
 
+/// How long a process may take to end once it has closed its output.
+const PATIENCE: Duration = Duration::from_secs(5);
+
 /// A decoded frame and its time since the video's first.
 #[derive(Debug)]
 pub(super) struct RawFrame {
@@ -21,36 +26,115 @@ pub(super) struct RawFrame {
     pub(super) time: Option<Duration>,
 }
 
+/// What ffmpeg is to read.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(in super::super) enum VideoInput {
+    /// A file.
+    File(PathBuf),
+    /// A named pipe.
+    Fifo(PathBuf),
+    /// Standard input.
+    Standard,
+    /// An address that was meant as one.
+    Url(String),
+    /// A capture device, by ffmpeg's name of its kind and its own.
+    Device {
+        /// ffmpeg's `-f`.
+        format: String,
+        /// What ffmpeg calls the device.
+        name: String,
+    },
+}
+
+impl VideoInput {
+    /// What messages call it.
+    pub(super) fn name(&self) -> PathBuf {
+        match self {
+            Self::File(path) | Self::Fifo(path) => path.clone(),
+            Self::Standard => PathBuf::from("standard input"),
+            Self::Url(name) | Self::Device { name, .. } => PathBuf::from(name),
+        }
+    }
+
+    /// The options before `-i`, and what follows it. With the protocol named, no path is taken for an option, a URL or a pattern.
+    fn arguments(&self) -> (Vec<&str>, OsString) {
+        let file = |path: &Path| {
+            let mut input = OsString::from("file:");
+            input.push(path);
+            input
+        };
+        match self {
+            Self::File(path) | Self::Fifo(path) => (vec![], file(path)),
+            Self::Standard => (vec![], "pipe:0".into()),
+            Self::Url(url) => (vec!["-fflags", "nobuffer"], url.into()),
+            Self::Device { format, name } => (vec!["-fflags", "nobuffer", "-f", format], name.into()),
+        }
+    }
+
+    fn stdin(&self) -> Stdio {
+        if *self == Self::Standard { Stdio::inherit() } else { Stdio::null() }
+    }
+}
+
 /// A running ffmpeg, ended on drop.
 #[derive(Debug)]
 pub(super) struct Decoder {
-    child: Child,
-    frames: BufReader<ChildStdout>,
+    child: Stopper,
+    /// `None` once it is given up.
+    frames: Option<BufReader<ChildStdout>>,
     log: LogReader,
     first_time: Option<f64>,
+    last_time: Option<Duration>,
+}
+
+/// Ends an ffmpeg from wherever.
+#[derive(Debug, Clone)]
+pub(super) struct Stopper(Arc<Mutex<Child>>);
+
+impl Stopper {
+    /// Ends the process and collects it. Neither can fail in a way that matters: it may have ended by itself.
+    pub(super) fn stop(&self) {
+        let mut child = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let _ = child.kill();
+        let _ = child.wait();
+    }
+
+    /// How the process ended, if it does within some time after it has closed its output.
+    fn ended(&self) -> Option<ExitStatus> {
+        let since = Instant::now();
+        while since.elapsed() < PATIENCE {
+            let status = self.0.lock().unwrap_or_else(PoisonError::into_inner).try_wait();
+            match status {
+                Ok(None) => thread::sleep(Duration::from_millis(2)),
+                Ok(status) => return status,
+                Err(_) => return None,
+            }
+        }
+        None
+    }
 }
 
 impl Decoder {
-    /// Starts ffmpeg on a file and waits for its first frame.
-    pub(super) fn start(program: &str, path: &Path) -> Result<(Self, RawFrame), SequenceError> {
+    /// Starts ffmpeg on an input and waits for its first frame.
+    pub(super) fn start(program: &str, input: &VideoInput) -> Result<(Self, RawFrame), SequenceError> {
         let [new, old] = NO_RESAMPLING;
-        match Self::try_start(program, path, new)? {
+        match Self::try_start(program, input, new)? {
             Ok(started) => Ok(started),
             Err(lines) if lines.iter().any(|line| line.contains("fps_mode")) => {
-                Self::try_start(program, path, old)?.map_err(|lines| bad_video(path, &lines))
+                Self::try_start(program, input, old)?.map_err(|lines| bad_video(input, &lines))
             }
-            Err(lines) => Err(bad_video(path, &lines)),
+            Err(lines) => Err(bad_video(input, &lines)),
         }
     }
 
     /// The inner error: ffmpeg's last lines where it gave no frame.
     fn try_start(
         program: &str,
-        path: &Path,
+        input: &VideoInput,
         no_resampling: &str,
     ) -> Result<Result<(Self, RawFrame), Vec<String>>, SequenceError> {
-        let mut decoder = Self::spawn(program, path, no_resampling)?;
-        match read_ppm(&mut decoder.frames) {
+        let mut decoder = Self::spawn(program, input, no_resampling)?;
+        match decoder.read() {
             Ok(Some(frame)) => {
                 let first = decoder.timed(frame);
                 if decoder.log.is_text() {
@@ -65,31 +149,40 @@ impl Decoder {
         }
     }
 
-    fn spawn(program: &str, path: &Path, no_resampling: &str) -> Result<Self, SequenceError> {
-        let failed = |source| SequenceError::FfmpegMissing {
-            path: path.to_owned(),
-            program: program.to_owned(),
-            source,
-        };
+    fn spawn(program: &str, input: &VideoInput, no_resampling: &str) -> Result<Self, SequenceError> {
+        let failed =
+            |source| SequenceError::FfmpegMissing { path: input.name(), program: program.to_owned(), source };
+        let (options, name) = input.arguments();
         let mut child = Command::new(program)
-            .args(["-nostdin", "-hide_banner", "-nostats", "-loglevel", "info", "-i"])
-            .arg(as_ffmpeg_input(path))
+            .args(["-nostdin", "-hide_banner", "-nostats", "-loglevel", "level+info"])
+            .args(options)
+            .arg("-i")
+            .arg(name)
             .args(["-map", "0:v:0", "-vf", "showinfo", no_resampling, "passthrough"])
             .args(["-f", "image2pipe", "-c:v", "ppm", "-pix_fmt", "rgb24", "-"])
-            .stdin(Stdio::null())
+            .stdin(input.stdin())
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
             .spawn()
             .map_err(failed)?;
         match (child.stdout.take(), child.stderr.take()) {
             (Some(stdout), Some(stderr)) => Ok(Self {
-                child,
-                frames: BufReader::new(stdout),
+                child: Stopper(Arc::new(Mutex::new(child))),
+                frames: Some(BufReader::new(stdout)),
                 log: LogReader::follow(stderr),
                 first_time: None,
+                last_time: None,
             }),
             _ => Err(failed(io::Error::other("it has no output"))),
         }
+    }
+
+    pub(super) fn stopper(&self) -> Stopper {
+        self.child.clone()
+    }
+
+    fn read(&mut self) -> io::Result<Option<Frame>> {
+        self.frames.as_mut().map_or(Ok(None), read_ppm)
     }
 
     /// The next frame after number `last_good`, or `None` at the video's proper end.
@@ -98,32 +191,40 @@ impl Decoder {
         path: &Path,
         last_good: usize,
     ) -> Result<Option<RawFrame>, SequenceError> {
-        let read = read_ppm(&mut self.frames);
+        let read = self.read();
         if let Ok(Some(frame)) = read {
             return Ok(Some(self.timed(frame)));
         }
-        let ended_well = matches!(read, Ok(None)) && self.child.wait().is_ok_and(|status| status.success());
-        if ended_well {
-            return Ok(None);
-        }
+        let broken =
+            |message: String| SequenceError::VideoBroken { path: path.to_owned(), last_good, message };
+        let ended_well =
+            matches!(read, Ok(None)) && self.child.ended().is_some_and(|status| status.success());
         self.end();
+        if ended_well {
+            return match self.log.early_end(self.last_time, last_good) {
+                Some(reason) => Err(broken(reason)),
+                None => Ok(None),
+            };
+        }
         let lines = self.log.last_lines();
         let message =
             last_message(&lines).map_or_else(|| "ffmpeg stopped without a message".to_owned(), str::to_owned);
-        Err(SequenceError::VideoBroken { path: path.to_owned(), last_good, message })
+        Err(broken(message))
     }
 
     fn timed(&mut self, frame: Frame) -> RawFrame {
         let in_container = self.log.next_time();
         let first = *self.first_time.get_or_insert(in_container.unwrap_or(0.0));
         let time = in_container.and_then(|time| Duration::try_from_secs_f64(time - first).ok());
+        self.last_time = time;
         RawFrame { frame, time }
     }
 
-    /// Ends the process and collects it. Neither can fail in a way that matters: it may have ended by itself.
+    /// Ends the process, and closes the pipe first: what the process may have started could go on writing into it, and nothing of
+    /// it would end while somebody holds the other side.
     fn end(&mut self) {
-        let _ = self.child.kill();
-        let _ = self.child.wait();
+        drop(self.frames.take());
+        self.child.stop();
     }
 }
 
@@ -133,18 +234,14 @@ impl Drop for Decoder {
     }
 }
 
-/// With the protocol named, no path is taken for an option, a URL or a pattern.
-fn as_ffmpeg_input(path: &Path) -> OsString {
-    let mut input = OsString::from("file:");
-    input.push(path);
-    input
-}
-
-fn bad_video(path: &Path, lines: &[String]) -> SequenceError {
+fn bad_video(input: &VideoInput, lines: &[String]) -> SequenceError {
     let message = last_message(lines).unwrap_or("it gives no frame");
-    let own_name = format!("file:{}: ", path.display());
-    let message = message.strip_prefix(&own_name).unwrap_or(message).to_owned();
-    SequenceError::BadVideo { path: path.to_owned(), message }
+    let path = input.name();
+    let names =
+        [format!("file:{}: ", path.display()), format!("{}: ", path.display()), "pipe:0: ".to_owned()];
+    let message =
+        names.iter().find_map(|name| message.strip_prefix(name.as_str())).unwrap_or(message).to_owned();
+    SequenceError::BadVideo { path, message }
 }
 
 /// The last line that tells a reason; what ffmpeg says about its own farewell does not.

@@ -1,18 +1,22 @@
-//! Frames of a video file, through a pipe from the ffmpeg program.
+//! Frames of a video file or a stream, through a pipe from the ffmpeg program.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use super::{FrameSource, SequenceError, SourceFrame, range::FrameRange, size_guard::SizeGuard};
 
 mod ffmpeg;
+mod live;
 mod log;
 mod ppm;
 
+pub(super) use ffmpeg::VideoInput;
 use ffmpeg::{Decoder, RawFrame};
+pub(super) use live::LiveVideo;
 
 /// A video's frames, decoded one at a time by a child process that is ended when this is dropped.
 #[derive(Debug)]
 pub(super) struct VideoFile {
+    /// What messages call it.
     path: PathBuf,
     decoder: Decoder,
     range: FrameRange,
@@ -25,15 +29,15 @@ pub(super) struct VideoFile {
 
 impl VideoFile {
     /// Starts the program that INFOPART_FFMPEG names, else `ffmpeg`, and decodes up to the range's first frame.
-    pub(super) fn open(path: &Path, range: FrameRange) -> Result<Self, SequenceError> {
+    pub(super) fn open(input: VideoInput, range: FrameRange) -> Result<Self, SequenceError> {
         let program = std::env::var("INFOPART_FFMPEG").ok().filter(|name| !name.is_empty());
-        Self::open_with(program.as_deref().unwrap_or("ffmpeg"), path, range)
+        Self::open_with(program.as_deref().unwrap_or("ffmpeg"), &input, range)
     }
 
-    fn open_with(program: &str, path: &Path, range: FrameRange) -> Result<Self, SequenceError> {
-        let (decoder, first) = Decoder::start(program, path)?;
+    fn open_with(program: &str, input: &VideoInput, range: FrameRange) -> Result<Self, SequenceError> {
+        let (decoder, first) = Decoder::start(program, input)?;
         let mut video = Self {
-            path: path.to_owned(),
+            path: input.name(),
             decoder,
             range,
             decoded: 1,
@@ -42,6 +46,11 @@ impl VideoFile {
         };
         video.skip_to_start()?;
         Ok(video)
+    }
+
+    /// Goes on decoding whether frames are asked for or not, and delivers the newest.
+    pub(super) fn live(self) -> LiveVideo {
+        LiveVideo::follow(self)
     }
 
     fn skip_to_start(&mut self) -> Result<(), SequenceError> {

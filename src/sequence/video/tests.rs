@@ -31,7 +31,11 @@ fn frames_at(times: &[&str]) -> String {
 
 fn opened(script: &str, range: FrameRange) -> Result<VideoFile, SequenceError> {
     let (_folder, program) = stand_in(script);
-    VideoFile::open_with(&program, &PathBuf::from("some.mp4"), range)
+    VideoFile::open_with(&program, &some_file(), range)
+}
+
+fn some_file() -> VideoInput {
+    VideoInput::File(PathBuf::from("some.mp4"))
 }
 
 #[test]
@@ -59,7 +63,9 @@ fn a_range_skips_and_stops_but_keeps_numbers_and_times() {
 
 #[test]
 fn a_missing_ffmpeg_says_how_to_install_it() {
-    let error = VideoFile::open_with("no-such-ffmpeg", &PathBuf::from("a.mp4"), ALL).unwrap_err().to_string();
+    let error = VideoFile::open_with("no-such-ffmpeg", &VideoInput::File(PathBuf::from("a.mp4")), ALL)
+        .unwrap_err()
+        .to_string();
     for part in
         ["a.mp4", "`no-such-ffmpeg`", "apt install ffmpeg", "brew install ffmpeg", "winget install ffmpeg"]
     {
@@ -108,7 +114,7 @@ fn a_frame_of_another_size_names_the_frame() {
 #[test]
 fn dropping_a_video_ends_its_process() {
     let (folder, program) = stand_in(&(frames_at(&["0"]) + "echo $$ > \"$0.pid\"; exec sleep 1000"));
-    let video = VideoFile::open_with(&program, &PathBuf::from("some.mp4"), ALL).unwrap();
+    let video = VideoFile::open_with(&program, &some_file(), ALL).unwrap();
     let pid_file = folder.path().join("ffmpeg.pid");
     let written = || fs::read_to_string(&pid_file).ok().filter(|text| text.ends_with('\n'));
     let pid = (0..2000).find_map(|_| {
@@ -118,4 +124,59 @@ fn dropping_a_video_ends_its_process() {
     drop(video);
     let alive = Command::new("kill").args(["-0", pid.unwrap().trim()]).output().unwrap();
     assert!(!alive.status.success());
+}
+
+#[test]
+fn endless_garbage_is_given_up_though_what_writes_it_is_a_grandchild() {
+    for garbage in ["cat /dev/zero", "head -c 1000000 /dev/urandom; sleep 1000", "cat /dev/zero >&2"] {
+        for before in [String::new(), frames_at(&["0"])] {
+            let is_frame = !before.is_empty();
+            let since = std::time::Instant::now();
+            let script = format!("{before}printf x\n{garbage}");
+            let message = match opened(&script, ALL) {
+                Err(error) => error.to_string(),
+                Ok(mut video) => {
+                    assert!(is_frame && video.next_frame().unwrap().is_some());
+                    video.next_frame().unwrap_err().to_string()
+                }
+            };
+            assert!(message.contains("some.mp4"), "{message}");
+            assert!(since.elapsed() < std::time::Duration::from_secs(60), "{garbage}");
+        }
+    }
+}
+
+#[test]
+fn no_name_is_an_option_or_a_protocol_unless_it_was_meant() {
+    let script = "for word; do echo \"$word\" >> \"$0.args\"; done; exit 1";
+    let arguments = |input: VideoInput| {
+        let (folder, program) = stand_in(script);
+        let _ = VideoFile::open_with(&program, &input, ALL);
+        fs::read_to_string(folder.path().join("ffmpeg.args")).unwrap()
+    };
+    for name in ["-y", "concat:a|b", "http://host/a.mp4", "pipe:0"] {
+        let words = arguments(VideoInput::File(PathBuf::from(name)));
+        assert!(words.contains(&format!("-i\nfile:{name}\n")), "{words}");
+    }
+    assert!(arguments(VideoInput::Standard).contains("-i\npipe:0\n"));
+    assert!(arguments(VideoInput::Url("rtsp://host/1".into())).contains("-i\nrtsp://host/1\n"));
+    let device = VideoInput::Device { format: "v4l2".into(), name: "/dev/video0".into() };
+    assert!(arguments(device).contains("-f\nv4l2\n-i\n/dev/video0\n"));
+}
+
+#[test]
+fn a_live_stream_gives_the_newest_frame_and_its_number() {
+    let mut video = opened(&frames_at(&["0", "1", "2", "3"]), ALL).unwrap().live();
+    let mut numbers = Vec::new();
+    while let Some(frame) = video.next_frame().unwrap() {
+        assert_eq!(frame.time.map(|time| time.as_secs()), Some(frame.number as u64 - 1));
+        numbers.push(frame.number);
+    }
+    // How many are left out depends on time, their order and the last one do not.
+    assert!(numbers.windows(2).all(|pair| pair[0] < pair[1]) && numbers.ends_with(&[4]), "{numbers:?}");
+    assert!(video.next_frame().unwrap().is_none());
+    let mut broken = opened(&(frames_at(&["0"]) + "printf garbage"), ALL).unwrap().live();
+    assert_eq!(broken.next_frame().unwrap().unwrap().number, 1, "a frame is delivered before the error");
+    assert!(broken.next_frame().unwrap_err().to_string().contains("broke off after frame 1"));
+    assert!(broken.next_frame().unwrap().is_none());
 }

@@ -1,0 +1,95 @@
+//! How sure scores are: intervals over sequences and seeds, and every tracker against a chosen one.
+
+use rayon::prelude::*;
+
+use super::{Measure, Table, TrackerScores};
+use crate::{
+    compare::{Comparison, Pair, compare},
+    statistics::{Interval, RESAMPLES, holm, intervals, mean},
+    toolkits::{Curves, Rules},
+};
+
+/// Seed of the bootstrap: the same results give the same interval.
+const BOOTSTRAP_SEED: u64 = 1;
+
+/// The 95 % interval of each measure of [`Measure::ALL`], for each tracker of a table in its order; `None` where there is no
+/// score.
+pub fn certainty(table: &Table) -> Vec<[Option<Interval>; Measure::COUNT]> {
+    table.trackers.par_iter().map(|one| of_tracker(one, &table.toolkit.rules())).collect()
+}
+
+fn of_tracker(one: &TrackerScores, rules: &Rules) -> [Option<Interval>; Measure::COUNT] {
+    let columns = Measure::ALL.map(|measure| {
+        let value = |curves: &Curves| measure.counted(curves, rules).unwrap_or(f64::NAN);
+        let sequences = one.sequences.iter().map(|row| row.curves.iter().flatten().map(value).collect());
+        sequences.filter(|seeds: &Vec<f64>| !seeds.is_empty()).collect::<Vec<_>>()
+    });
+    let is_known = columns.each_ref().map(|column| column.iter().flatten().any(|value| !value.is_nan()));
+    let found = intervals(columns.each_ref().map(Vec::as_slice), RESAMPLES, BOOTSTRAP_SEED);
+    std::array::from_fn(|place| found.map(|found| found[place]).filter(|_| is_known[place]))
+}
+
+/// A tracker against the chosen one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Against {
+    /// Its scores less those of the chosen one, paired by sequence and seed.
+    pub comparison: Comparison,
+    /// The probability by Wilcoxon's signed-rank test, corrected by Holm's rule for all trackers that were compared.
+    pub corrected_p: f64,
+}
+
+/// Every tracker of a table against the one at `chosen`, in the table's order; `None` for that one itself, and for those
+/// that have no sequence and seed with it.
+pub fn against(table: &Table, chosen: usize, measure: Measure) -> Vec<Option<Against>> {
+    let Some(other) = table.trackers.get(chosen) else { return Vec::new() };
+    let compared = |(place, one): (usize, &TrackerScores)| {
+        if place == chosen { None } else { compare_scores(one, other, measure) }
+    };
+    let comparisons: Vec<Option<Comparison>> = table.trackers.par_iter().enumerate().map(compared).collect();
+    let probabilities: Vec<f64> = comparisons.iter().flatten().map(|one| one.p_value).collect();
+    let corrected = holm(&probabilities);
+    let mut corrected = corrected.into_iter();
+    let mut against = Vec::new();
+    for comparison in comparisons {
+        against.push(match comparison {
+            Some(comparison) => corrected.next().map(|corrected_p| Against { comparison, corrected_p }),
+            None => None,
+        });
+    }
+    against
+}
+
+/// Two trackers of a table in a measure; `None` if they have no sequence and seed in common.
+pub fn compare_scores(first: &TrackerScores, second: &TrackerScores, measure: Measure) -> Option<Comparison> {
+    compare(&pairs(first, second, measure), RESAMPLES, BOOTSTRAP_SEED)
+}
+
+/// Sequences that both have, with the values of the seeds that both have. Trackers of different seeds, such as a published one
+/// that knows none, are paired by the mean of each over its own seeds.
+fn pairs(first: &TrackerScores, second: &TrackerScores, measure: Measure) -> Vec<Pair> {
+    let seeds = common_seeds(first, second);
+    let value = |one: &TrackerScores, row: usize, seed: u64| {
+        let place = one.seeds.iter().position(|known| *known == seed)?;
+        measure.on(one.sequences[row].curves[place].as_ref()?)
+    };
+    let of_all = |one: &TrackerScores, row: usize| {
+        let curves = one.sequences[row].curves.iter().flatten();
+        let values: Vec<f64> = curves.filter_map(|curves| measure.on(curves)).collect();
+        (!values.is_empty()).then(|| mean(values.into_iter()))
+    };
+    let pair = |row: usize| {
+        let both = |seed: &u64| Some((value(first, row, *seed)?, value(second, row, *seed)?));
+        let (one, other): (Vec<f64>, Vec<f64>) = if seeds.is_empty() {
+            of_all(first, row).zip(of_all(second, row)).into_iter().unzip()
+        } else {
+            seeds.iter().filter_map(both).unzip()
+        };
+        Pair { sequence: first.sequences[row].sequence.clone(), first: one, second: other }
+    };
+    (0..first.sequences.len()).map(pair).filter(|pair| !pair.first.is_empty()).collect()
+}
+
+/// The seeds that both trackers have.
+pub fn common_seeds(first: &TrackerScores, second: &TrackerScores) -> Vec<u64> {
+    first.seeds.iter().copied().filter(|seed| second.seeds.contains(seed)).collect()
+}
