@@ -128,7 +128,7 @@ fn dropping_a_video_ends_its_process() {
 
 #[test]
 fn endless_garbage_is_given_up_though_what_writes_it_is_a_grandchild() {
-    for garbage in ["cat /dev/zero", "head -c 1000000 /dev/urandom; sleep 1000", "cat /dev/zero >&2"] {
+    for garbage in ["cat /dev/zero", "head -c 1000000 /dev/urandom; sleep 1000"] {
         for before in [String::new(), frames_at(&["0"])] {
             let is_frame = !before.is_empty();
             let since = std::time::Instant::now();
