@@ -9,7 +9,7 @@ without its tracker. Printed are MOTA, IDF1, HOTA (TrackEval's rules) and what t
 by more than 1.5 times the shorter side, and the share of steps that halve or double an area.
 
 Needs `cargo build --release --workspace` and bench/requirements.txt (--reference also bench/requirements-sort.txt). A clip is
-NAME=VIDEO or NAME=VIDEO,GT; the usual ones are in the data folder.
+NAME=VIDEO or NAME=VIDEO,GT, where VIDEO may be images, DIR/%%04d.jpg; the usual ones are in the data folder.
 """
 
 import argparse
@@ -84,7 +84,9 @@ def run(options, words):
 
 def run_ours(options, video, out):
     start = time.perf_counter()
-    run(options, ["track", video, "--out", out, *options.flags.split()])
+    # OpenCV reads images by a pattern, `mot track` by their folder.
+    images = video.parent if "%" in video.name else video
+    run(options, ["track", images, "--out", out, *options.flags.split()])
     return time.perf_counter() - start
 
 
