@@ -114,7 +114,7 @@ impl SortArgs {
             )
             .into());
         }
-        if !(self.low <= self.high) {
+        if self.low.is_nan() || self.high.is_nan() || self.low > self.high {
             let message = format!(
                 "--low {} --high {}: give a low confidence that is not above the high one",
                 self.low, self.high

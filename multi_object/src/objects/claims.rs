@@ -172,11 +172,11 @@ fn take_all(claims: &mut [Claim], parts: &[Part], claimers: &[Claimer], left: &m
             if has_established { only(established.by_ref(), region) } else { only(parts.iter(), region) };
         found.filter(|&track| claimers[track].takes_all)
     };
-    for track in 0..claims.len() {
+    for (track, claim) in claims.iter_mut().enumerate() {
         let is_taken = |segment: &Segment| taker(segment.region).is_some_and(|one| one != track);
-        let segments = std::mem::take(&mut claims[track].segments);
+        let segments = std::mem::take(&mut claim.segments);
         let (taken, kept): (Vec<Segment>, Vec<Segment>) = segments.into_iter().partition(is_taken);
-        claims[track].segments = kept;
+        claim.segments = kept;
         left.extend(taken);
     }
     left.retain(|segment| match taker(segment.region) {
