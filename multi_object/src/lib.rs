@@ -15,6 +15,7 @@ pub mod grid;
 pub mod line_plot;
 pub mod motchallenge;
 pub mod motion;
+pub mod objects;
 pub mod scoring;
 pub mod sort;
 pub mod tracking;

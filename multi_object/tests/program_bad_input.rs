@@ -29,6 +29,9 @@ fn detections_that_cannot_be_used_are_named_by_file_and_line() {
         ("2,-1,10,10,-5,9,0.9\n", ["line 2", "width and height must be above 0"]),
         ("2,-1,10,10,inf,9,0.9\n", ["line 2", "the width is \"inf\""]),
         ("0,-1,10,10,5,9,0.9\n", ["line 2", "counts frames from 1"]),
+        ("2,-1,10,10,1e30,9,0.9\n", ["line 2", "fits no picture"]),
+        ("2,-1,10,10,1e308,1e308,0.9\n", ["line 2", "fits no picture"]),
+        ("2,-1,1e30,10,5,9,0.9\n", ["line 2", "fits no picture"]),
         ("3,-1,10,10,5,9,0.9\n2,-1,10,10,5,9,0.9\n", ["line 3", "frame 2 comes after frame 3"]),
     ] {
         let path = file(folder.path(), "det.txt", &format!("{good}{rows}"));
@@ -47,7 +50,6 @@ fn tracks_that_cannot_be_scored_are_named_by_file_and_line() {
     let truth = file(folder.path(), "gt.txt", "1,1,10,10,5,9,1\n2,1,10,10,5,9,1\n");
     for (rows, parts) in [
         ("1,3,1,1,5,9,1\n1,3,8,8,5,9,1\n", ["line 2", "identity 3 is already in frame 1, at line 1"]),
-        ("2,3,1,1,5,9,1\n1,3,8,8,5,9,1\n", ["line 2", "sort -s -t, -n -k1,1"]),
         ("1,-1,1,1,5,9,1\n", ["line 1", "a file of tracks needs one in every row"]),
         ("1,3,1,1,5,0,1\n", ["line 1", "has no area"]),
     ] {

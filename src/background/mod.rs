@@ -39,7 +39,8 @@ pub use blobs::Blob;
 pub use clean_up::{CheckedCleanUp, CleanUp, MaskCleaner};
 pub use model::BackgroundModel;
 pub use parameters::{BackgroundParameters, CheckedBackgroundParameters, ComponentRate};
-pub use pixel::{BACKGROUND, FOREGROUND, SHADOW};
+pub use pixel::{BACKGROUND, FOREGROUND, Learning, SHADOW};
+pub use regions::{Run, runs};
 
 use thiserror::Error;
 
@@ -88,6 +89,14 @@ pub enum BackgroundError {
         width: usize,
         /// Height of the frame, pixels.
         height: usize,
+    },
+    /// A guide that says nothing of some pixels.
+    #[error("the guide has {given} entries but the frame has {pixels} pixels: give one for each, row by row")]
+    GuideSize {
+        /// Entries of the guide.
+        given: usize,
+        /// Pixels of the frame.
+        pixels: usize,
     },
 }
 

@@ -4,7 +4,7 @@ use image::GrayImage;
 
 use super::{
     BACKGROUND, BackgroundError, CheckedBackgroundParameters,
-    pixel::{Gaussian, Update},
+    pixel::{Gaussian, Learning, Update},
 };
 use crate::{
     frame::FrameView,
@@ -45,17 +45,35 @@ impl BackgroundModel {
     /// # Errors
     /// [`BackgroundError::SizeChanged`] or [`BackgroundError::TooLarge`]; the model then stays as it was.
     pub fn apply(&mut self, frame: FrameView<'_>) -> Result<&GrayImage, BackgroundError> {
+        self.apply_guided(frame, &[])
+    }
+
+    /// The same where something is known of the pixels: `guide` says for each of them, row by row, how it is learnt from.
+    /// An empty guide has every pixel learnt.
+    ///
+    /// # Errors
+    /// As [`apply`](Self::apply), and [`BackgroundError::GuideSize`] if the guide has another number of pixels than the frame.
+    pub fn apply_guided(
+        &mut self,
+        frame: FrameView<'_>,
+        guide: &[Learning],
+    ) -> Result<&GrayImage, BackgroundError> {
         self.fit_size(&frame)?;
+        let (k, width) = (self.parameters.components, frame.width());
+        let (pixels, given) = (width * frame.height(), guide.len());
+        if given != 0 && given != pixels {
+            return Err(BackgroundError::GuideSize { given, pixels });
+        }
         self.frames += 1;
         let update = Update::new(&self.parameters, self.frames);
-        let (k, width) = (self.parameters.components, frame.width());
         let (weights, gaussians) = (&mut self.weights, &mut self.gaussians);
         let rows = (
             (ChunksMut(weights, k * width), ChunksMut(gaussians, k * width)),
             ChunksMut(&mut self.mask, width),
         );
         for_each(rows, ROWS_AT_A_TIME, |y, ((weights, gaussians), mask)| {
-            apply_row(&update, frame, y, weights, gaussians, mask);
+            let guide = guide.get(y * width..(y + 1) * width).unwrap_or_default();
+            apply_row(&update, frame, y, guide, weights, gaussians, mask);
         });
         Ok(&self.mask)
     }
@@ -98,6 +116,7 @@ fn apply_row(
     update: &Update,
     frame: FrameView<'_>,
     y: usize,
+    guide: &[Learning],
     weights: &mut [f32],
     gaussians: &mut [Gaussian],
     mask: &mut [u8],
@@ -106,9 +125,10 @@ fn apply_row(
     let k = weights.len() / mask.len();
     let pixels = frame.row(y).chunks_exact(frame.format().bytes_per_pixel());
     let mixtures = weights.chunks_exact_mut(k).zip(gaussians.chunks_exact_mut(k));
-    for ((pixel, (weights, gaussians)), out) in pixels.zip(mixtures).zip(mask) {
+    for (x, ((pixel, (weights, gaussians)), out)) in pixels.zip(mixtures).zip(mask).enumerate() {
         let colour = [red, green, blue].map(|channel| f32::from(pixel[channel]));
-        *out = update.apply(colour, weights, gaussians);
+        let learning = guide.get(x).copied().unwrap_or_default();
+        *out = update.apply(colour, learning, weights, gaussians);
     }
 }
 
@@ -155,6 +175,29 @@ mod tests {
         assert_eq!(one, masks(PixelFormat::Rgb, 4));
         assert_eq!(one, masks(PixelFormat::Gray, 2));
         assert_eq!(one, masks(PixelFormat::Bgra, 2));
+    }
+
+    #[test]
+    fn what_is_held_stays_foreground_and_what_is_replaced_is_background_at_once() {
+        let parameters = BackgroundParameters { history: 30, ..BackgroundParameters::default() };
+        let mut model = BackgroundModel::new(parameters.check().unwrap());
+        let grey = |level: u8| Frame::new(vec![level; 3], 3, 1, PixelFormat::Gray).unwrap();
+        for _ in 0..40 {
+            model.apply(grey(60).view()).unwrap();
+        }
+        let guide = [Learning::Usual, Learning::Hold, Learning::Replace];
+        let first = model.apply_guided(grey(220).view(), &guide).unwrap();
+        assert_eq!(**first, [FOREGROUND, FOREGROUND, BACKGROUND]);
+        for _ in 0..60 {
+            model
+                .apply_guided(grey(220).view(), &[Learning::Usual, Learning::Hold, Learning::Usual])
+                .unwrap();
+        }
+        // Learnt as usual it is background by now; held it is not, and what is behind it is still known.
+        assert_eq!(**model.mask(), [BACKGROUND, FOREGROUND, BACKGROUND]);
+        assert_eq!((**model.apply_guided(grey(60).view(), &guide).unwrap())[1], BACKGROUND);
+        let short = model.apply_guided(grey(60).view(), &guide[..2]).map(|_| ());
+        assert_eq!(short, Err(BackgroundError::GuideSize { given: 2, pixels: 3 }));
     }
 
     #[test]

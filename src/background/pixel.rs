@@ -22,6 +22,18 @@ pub const SHADOW: u8 = 127;
 /// Mask value of a foreground pixel.
 pub const FOREGROUND: u8 = 255;
 
+/// How a pixel is learnt from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Learning {
+    /// As the parameters say.
+    #[default]
+    Usual,
+    /// Not at all: an object stands there, and what is behind it stays known. (A pixel of which nothing is known is learnt.)
+    Hold,
+    /// All that is known is forgotten for what is seen now: what stood there has gone.
+    Replace,
+}
+
 /// A component but for its weight: mean and variance of each channel, grey levels and their squares.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Gaussian {
@@ -66,8 +78,20 @@ impl Update {
     }
 
     /// Steps 1 to 7: learns from `colour` and gives its mask value. `weights` and `gaussians` are the pixel's mixture.
-    pub fn apply(&self, colour: [f32; 3], weights: &mut [f32], gaussians: &mut [Gaussian]) -> u8 {
+    pub fn apply(
+        &self,
+        colour: [f32; 3],
+        learning: Learning,
+        weights: &mut [f32],
+        gaussians: &mut [Gaussian],
+    ) -> u8 {
+        if learning == Learning::Replace {
+            weights.fill(0.0);
+        }
         let explaining = self.explaining(&colour, weights, gaussians);
+        if learning == Learning::Hold && weights[0] > 0.0 {
+            return self.label(&colour, explaining.unwrap_or(weights.len()), weights, gaussians);
+        }
         let changed = match explaining {
             Some(k) => {
                 self.reinforce(k, &colour, weights, gaussians);
@@ -76,10 +100,15 @@ impl Update {
             None => self.replace(&colour, weights, gaussians),
         };
         let place = bring_into_order(changed, weights, gaussians);
+        self.label(&colour, place, weights, gaussians)
+    }
+
+    /// Steps 6 and 7 for a colour that the component at `place` explains.
+    fn label(&self, colour: &[f32; 3], place: usize, weights: &[f32], gaussians: &[Gaussian]) -> u8 {
         let background = self.background_components(weights);
         if place < background {
             BACKGROUND
-        } else if self.is_shadow(&colour, &gaussians[..background]) {
+        } else if self.is_shadow(colour, &gaussians[..background]) {
             SHADOW
         } else {
             FOREGROUND
@@ -183,7 +212,12 @@ mod tests {
             .iter()
             .enumerate()
             .map(|(i, colour)| {
-                Update::new(parameters, i as u64 + 1).apply(*colour, &mut weights, &mut gaussians)
+                Update::new(parameters, i as u64 + 1).apply(
+                    *colour,
+                    Learning::Usual,
+                    &mut weights,
+                    &mut gaussians,
+                )
             })
             .collect();
         (labels, weights, gaussians)

@@ -8,19 +8,19 @@ use image::GrayImage;
 
 /// A stretch of one row that belongs to a region.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Run {
+pub struct Run {
     /// The row.
     pub row: u32,
     /// Its first pixel.
     pub start: u32,
     /// One after its last pixel.
     pub end: u32,
-    /// Index of the region's first run.
+    /// Index of the region's first run, which names the region.
     pub region: usize,
 }
 
 /// The runs of all pixels of `value`, row by row; regions are 8-connected if `diagonal`, else 4-connected.
-pub(super) fn runs(mask: &GrayImage, value: u8, diagonal: bool) -> Vec<Run> {
+pub fn runs(mask: &GrayImage, value: u8, diagonal: bool) -> Vec<Run> {
     let mut runs: Vec<Run> = Vec::new();
     let mut above = 0..0;
     for (y, row) in mask.chunks_exact(mask.width().max(1) as usize).enumerate() {

@@ -12,6 +12,7 @@ use multi_object::motchallenge::MotError;
 
 mod compare;
 mod filter;
+mod foreground;
 mod score;
 mod sort;
 mod track;

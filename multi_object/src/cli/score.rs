@@ -6,8 +6,8 @@ use anyhow::Result;
 use clap::{Args, ValueEnum};
 use infopart::{output::TextTable, program::BadInput};
 use multi_object::{
-    motchallenge::{MotError, read_ground_truth, read_tracks, sequence_name},
-    scoring::{Counts, Rules, Scores},
+    motchallenge::{MotError, read_annotations, read_tracks, sequence_name},
+    scoring::{Benchmark, Counts, Rules, Scores},
 };
 
 use super::deliver;
@@ -16,10 +16,12 @@ pub const EXAMPLES: &str = "\
 Examples:
   mot score mot/PETS09-S2L1/gt/gt.txt result.txt
   mot score mot/A/gt/gt.txt a.txt mot/B/gt/gt.txt b.txt --json scores.json
-  mot score mot/train results --rules trackeval
+  mot score mot/train results --rules trackeval --benchmark mot17 --sequence-map seqmaps/MOT17-train.txt
+  mot sort det.txt | mot score mot/A/gt/gt.txt -
 
-GT and RESULT are files of MOTChallenge text, or two folders: GT/SEQ/gt/gt.txt goes with RESULT/SEQ.txt. Ground truth \
-counts where its confidence (seventh field) is 1; a match needs an overlap of 0.5.
+GT and RESULT are files of MOTChallenge text, - for standard input, or two folders: GT/SEQ/gt/gt.txt goes with RESULT/SEQ.txt. \
+Rows stand in any order. Ground truth counts where its confidence (seventh field) is not 0; a match needs an overlap of 0.5. A \
+sequence that cannot be scored is told and left out; the exit code is then 2.
 Columns: IDF1 IDP IDR, recall, precision, GT objects, mostly / partly tracked, mostly lost, false positives, misses, \
 identity switches, fragments, MOTA, MOTP (mean of 1 - overlap), transfers, ascents, migrations, MOTPo (mean overlap), \
 FAR (false positives a frame), HOTA, DetA, AssA.";
@@ -35,6 +37,18 @@ enum RulesArg {
     Trackeval,
 }
 
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum BenchmarkArg {
+    /// Rows whose confidence is not 0 count
+    Mot15,
+    /// As MOT17
+    Mot16,
+    /// Pedestrians (class 1) count; results on people in vehicles, static people, distractors and reflections (2, 7, 8, 12) are removed
+    Mot17,
+    /// As MOT17, with vehicles without an engine (6) as distractors, too
+    Mot20,
+}
+
 #[derive(Debug, Args)]
 pub struct ScoreArgs {
     /// Ground truth and result, in turn: files, or one folder each
@@ -43,6 +57,12 @@ pub struct ScoreArgs {
     /// Whose rules: how matches are chosen, what is mostly tracked, what a fragment is
     #[arg(long, value_enum, default_value = "motmetrics")]
     rules: RulesArg,
+    /// What counts before it is scored: without classes, or pedestrians only, with distractors left out
+    #[arg(long, value_enum, default_value = "mot15")]
+    benchmark: BenchmarkArg,
+    /// Score only the sequences named in this file, one a line after the heading `name`
+    #[arg(long, value_name = "FILE")]
+    sequence_map: Option<PathBuf>,
     /// Also write the scores, with all digits, as JSON
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -61,16 +81,19 @@ pub fn score(args: &ScoreArgs) -> Result<()> {
         RulesArg::Trackeval => Rules::Trackeval,
     };
     let mut counts = Vec::new();
-    for pair in pairs(&args.pairs)? {
-        let truth = read_ground_truth(&pair.truth)?;
-        let result = read_tracks(&pair.result)?;
-        if result.is_empty() {
-            eprintln!(
-                "warning: {}: no row in it: scored as a tracker that found nothing",
-                pair.result.display()
-            );
+    let benchmark = args.benchmark();
+    let pairs = pairs(args)?;
+    let (total, mut bad) = (pairs.len(), 0);
+    for pair in pairs {
+        match pair.counts(benchmark, rules) {
+            Ok(of_pair) => counts.push((pair.name, of_pair)),
+            // The others are scored all the same.
+            Err(error) if total > 1 => {
+                eprintln!("error: {error}");
+                bad += 1;
+            }
+            Err(error) => return Err(error.into()),
         }
-        counts.push((pair.name, Counts::of(&truth, &result, rules)));
     }
     let mut scores: Vec<(String, Scores)> =
         counts.iter().map(|(name, counts)| (name.clone(), counts.scores())).collect();
@@ -80,14 +103,64 @@ pub fn score(args: &ScoreArgs) -> Result<()> {
     if let Some(path) = &args.json {
         deliver(Some(path), &format!("{}\n", json(rules, &scores)?))?;
     }
-    deliver(None, &table(&scores))
+    deliver(None, &table(&scores))?;
+    if bad > 0 {
+        let message =
+            format!("{bad} of {total} sequences could not be scored and are not in the table; see above");
+        return Err(BadInput(message).into());
+    }
+    Ok(())
 }
 
-fn pairs(given: &[PathBuf]) -> Result<Vec<Pair>> {
+impl Pair {
+    fn counts(&self, benchmark: Benchmark, rules: Rules) -> Result<Counts, MotError> {
+        let truth = read_annotations(&self.truth)?;
+        let result = read_tracks(&self.result)?;
+        if result.is_empty() {
+            let path = self.result.display();
+            eprintln!("warning: {path}: no row in it: scored as a tracker that found nothing");
+        }
+        let (truth, result) = benchmark.counted(&truth, &result);
+        Ok(Counts::of(&truth, &result, rules))
+    }
+}
+
+impl ScoreArgs {
+    fn benchmark(&self) -> Benchmark {
+        match self.benchmark {
+            BenchmarkArg::Mot15 => Benchmark::Mot15,
+            BenchmarkArg::Mot16 => Benchmark::Mot16,
+            BenchmarkArg::Mot17 => Benchmark::Mot17,
+            BenchmarkArg::Mot20 => Benchmark::Mot20,
+        }
+    }
+}
+
+fn pairs(args: &ScoreArgs) -> Result<Vec<Pair>> {
+    let given = args.pairs.as_slice();
     if let [truth, result] = given
         && truth.is_dir()
     {
-        return folders(truth, result);
+        let mut pairs = folders(truth, result)?;
+        if let Some(path) = &args.sequence_map {
+            let names = sequence_map(path)?;
+            if let Some(missing) = names.iter().find(|name| pairs.iter().all(|pair| pair.name != **name)) {
+                let what = format!("no {missing}/gt/gt.txt in it, which {} names", path.display());
+                return Err(MotError::Sequences { path: truth.clone(), what }.into());
+            }
+            pairs.retain(|pair| names.contains(&pair.name));
+        }
+        complain_of_missing(result, &pairs)?;
+        return Ok(pairs);
+    }
+    if args.sequence_map.is_some() {
+        return Err(BadInput("--sequence-map: it chooses among folders; give two folders".to_owned()).into());
+    }
+    if given.iter().filter(|path| path.as_os_str() == "-").count() > 1 {
+        return Err(BadInput(
+            "- twice: standard input can be read once; give files for the others".to_owned(),
+        )
+        .into());
     }
     if given.len() % 2 == 1 {
         let last = given.last().map(|path| path.display().to_string()).unwrap_or_default();
@@ -113,6 +186,15 @@ fn folders(truth: &Path, result: &Path) -> Result<Vec<Pair>> {
         }
     }
     pairs.sort_by(|a, b| a.name.cmp(&b.name));
+    if pairs.is_empty() {
+        let what = "no SEQ/gt/gt.txt in it; give the folder that holds the sequences".to_owned();
+        return Err(MotError::Sequences { path: truth.to_owned(), what }.into());
+    }
+    Ok(pairs)
+}
+
+/// A result for each sequence there must be.
+fn complain_of_missing(result: &Path, pairs: &[Pair]) -> Result<()> {
     let missing: Vec<String> =
         pairs.iter().filter(|pair| !pair.result.is_file()).map(|pair| format!("{}.txt", pair.name)).collect();
     if !missing.is_empty() {
@@ -120,11 +202,15 @@ fn folders(truth: &Path, result: &Path) -> Result<Vec<Pair>> {
             format!("no {}; give a result for each sequence, or GT RESULT by file", missing.join(", "));
         return Err(MotError::Sequences { path: result.to_owned(), what }.into());
     }
-    if pairs.is_empty() {
-        let what = "no SEQ/gt/gt.txt in it; give the folder that holds the sequences".to_owned();
-        return Err(MotError::Sequences { path: truth.to_owned(), what }.into());
-    }
-    Ok(pairs)
+    Ok(())
+}
+
+/// The names in a MOTChallenge sequence map: one a line after the heading `name`.
+fn sequence_map(path: &Path) -> Result<Vec<String>> {
+    let text = std::fs::read_to_string(path)
+        .map_err(|source| MotError::Unreadable { path: path.to_owned(), source })?;
+    let names = text.lines().map(|line| line.split(',').next().unwrap_or_default().trim());
+    Ok(names.filter(|name| !name.is_empty() && *name != "name").map(str::to_owned).collect())
 }
 
 fn json(rules: Rules, scores: &[(String, Scores)]) -> Result<String> {

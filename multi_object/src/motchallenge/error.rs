@@ -88,6 +88,21 @@ pub enum RowProblem {
         /// Its height.
         height: f64,
     },
+    /// A box that no picture holds.
+    #[error(
+        "a box of {width} x {height} at {x}, {y} fits no picture: coordinates must be within 10 million pixels and the area above 0; \
+         correct or remove the row"
+    )]
+    Absurd {
+        /// Its left edge.
+        x: f64,
+        /// Its top edge.
+        y: f64,
+        /// Its width.
+        width: f64,
+        /// Its height.
+        height: f64,
+    },
     /// An identity that is in two places at once.
     #[error(
         "identity {identity} is already in frame {frame}, at line {first_line}; remove one of the two rows"

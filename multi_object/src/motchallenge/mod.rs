@@ -10,7 +10,7 @@ mod read;
 mod tests;
 
 pub use error::{MotError, RowProblem};
-pub use read::{read_detections, read_ground_truth, read_tracks};
+pub use read::{read_annotations, read_detections, read_ground_truth, read_tracks};
 
 /// Where one object is in one frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,6 +25,22 @@ pub struct TrackRow {
     pub confidence: f64,
 }
 
+/// A row of ground truth, whether it counts or not.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Annotation {
+    /// The row; its confidence says whether it counts.
+    pub row: TrackRow,
+    /// The eighth field, from MOT16 on: 1 is a pedestrian.
+    pub class: Option<u32>,
+}
+
+impl Annotation {
+    /// Whether the row counts: its confidence is not 0; -1 is none.
+    pub fn is_counted(&self) -> bool {
+        self.row.confidence.trunc() != 0.0
+    }
+}
+
 /// Something that a detector saw.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Detection {
@@ -34,14 +50,25 @@ pub struct Detection {
     pub box_in_file: Rect,
     /// The detector's confidence, or 1.
     pub confidence: f64,
+    /// The eighth field, if it names a class; -1 is none.
+    pub class: Option<u32>,
 }
 
-/// A row as SORT and its descendants write it: boxes to a hundredth of a pixel, `1,-1,-1,-1` behind them.
+/// A row as SORT and its descendants write it: boxes to a hundredth of a pixel, the confidence and `-1,-1,-1` behind them.
 pub fn row_text(row: &TrackRow) -> String {
+    row_text_of_class(row, None)
+}
+
+/// The same with a class in the eighth field, if there is one.
+pub fn row_text_of_class(row: &TrackRow, class: Option<u32>) -> String {
     let Rect { x, y, w, h } = row.box_in_file;
     let mut text = format!("{},{},", row.frame, row.identity);
     // Writing to a String cannot fail.
-    let _ = writeln!(text, "{x:.2},{y:.2},{w:.2},{h:.2},{},-1,-1,-1", row.confidence);
+    let _ = write!(text, "{x:.2},{y:.2},{w:.2},{h:.2},{},", row.confidence);
+    let _ = match class {
+        Some(class) => writeln!(text, "{class},-1,-1"),
+        None => writeln!(text, "-1,-1,-1"),
+    };
     text
 }
 

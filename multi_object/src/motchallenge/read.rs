@@ -1,32 +1,37 @@
 //! Reading rows.
 
-use std::{
-    collections::{HashMap, HashSet},
-    fs,
-    path::Path,
-};
+use std::{collections::HashMap, fs, path::Path};
 
 use infopart::geometry::Rect;
 
-use super::{Detection, MotError, RowProblem, TrackRow};
+use super::{Annotation, Detection, MotError, RowProblem, TrackRow};
 
 /// Frames beyond this are taken for a mistake: nothing holds so many.
 const MAX_FRAME: f64 = 1e8;
-/// The confidence of the ground truth's rows that count.
-const COUNTED: f64 = 1.0;
+/// Pixels beyond this are taken for a mistake: no picture has so many in a row, and areas and their squares stay exact enough.
+const MAX_PIXEL: f64 = 1e7;
 
-/// Reads ground truth: the rows whose confidence is 1, as MOT15 has it. Rows stand in the file's order, by frame or by
-/// identity.
+/// Reads ground truth: the rows whose confidence is not 0, as MOT15 has it (-1 is none given). Rows stand in any order.
 ///
 /// # Errors
 /// [`MotError`] if the file cannot be read, a row cannot be used, or no row counts.
 pub fn read_ground_truth(path: &Path) -> Result<Vec<TrackRow>, MotError> {
-    let rows = parse_tracks(&text_of(path)?, path, true)?;
-    if rows.is_empty() {
+    let annotations = read_annotations(path)?;
+    Ok(annotations.iter().filter(|one| one.is_counted()).map(|one| one.row).collect())
+}
+
+/// Reads every row of ground truth, with its class if it has one. Rows stand in any order. Boxes of rows that do not count may
+/// be anything.
+///
+/// # Errors
+/// [`MotError`] if the file cannot be read, a row cannot be used, or no row counts.
+pub fn read_annotations(path: &Path) -> Result<Vec<Annotation>, MotError> {
+    let annotations = parse_annotations(&text_of(path)?, path)?;
+    if !annotations.iter().any(Annotation::is_counted) {
         let what = "no row with confidence 1 (the seventh field), so nothing to find; give ground truth";
         return Err(MotError::Empty { path: path.to_owned(), what });
     }
-    Ok(rows)
+    Ok(annotations)
 }
 
 /// Reads tracks, such as a tracker's result; the confidence may be missing and filters nothing. Nothing in the file is
@@ -35,7 +40,7 @@ pub fn read_ground_truth(path: &Path) -> Result<Vec<TrackRow>, MotError> {
 /// # Errors
 /// [`MotError`] if the file cannot be read or a row cannot be used.
 pub fn read_tracks(path: &Path) -> Result<Vec<TrackRow>, MotError> {
-    parse_tracks(&text_of(path)?, path, false)
+    parse_tracks(&text_of(path)?, path)
 }
 
 /// Reads detections; the identity is not looked at. Rows must be in the order of their frames.
@@ -54,7 +59,8 @@ pub fn read_detections(path: &Path) -> Result<Vec<Detection>, MotError> {
         }
         let box_in_file = box_of(&fields).map_err(row)?;
         let confidence = confidence_of(&fields).map_err(row)?.unwrap_or(1.0);
-        detections.push(Detection { frame, box_in_file, confidence });
+        let class = class_of(&fields).map_err(row)?;
+        detections.push(Detection { frame, box_in_file, confidence, class });
     }
     if detections.is_empty() {
         let what = "no detection in it; give rows FRAME,-1,X,Y,WIDTH,HEIGHT,CONFIDENCE";
@@ -63,8 +69,13 @@ pub fn read_detections(path: &Path) -> Result<Vec<Detection>, MotError> {
     Ok(detections)
 }
 
+/// The file's text; that of standard input for `-`.
 fn text_of(path: &Path) -> Result<String, MotError> {
-    fs::read_to_string(path).map_err(|source| MotError::Unreadable { path: path.to_owned(), source })
+    let read = match path.as_os_str() == "-" {
+        true => std::io::read_to_string(std::io::stdin()),
+        false => fs::read_to_string(path),
+    };
+    read.map_err(|source| MotError::Unreadable { path: path.to_owned(), source })
 }
 
 /// The rows that are not blank, with their lines counted from 1, cut at commas, or else at blanks.
@@ -79,46 +90,54 @@ fn rows_of(text: &str) -> impl Iterator<Item = (usize, Vec<&str>)> {
     })
 }
 
-pub(super) fn parse_tracks(text: &str, path: &Path, is_truth: bool) -> Result<Vec<TrackRow>, MotError> {
-    let mut rows: Vec<TrackRow> = Vec::new();
-    let mut order = Order::default();
-    let mut lines: HashMap<(u32, u64), usize> = HashMap::new();
+pub(super) fn parse_tracks(text: &str, path: &Path) -> Result<Vec<TrackRow>, MotError> {
+    let mut lines = Lines::default();
+    (rows_of(text).map(|(line, fields)| {
+        let row = |problem| MotError::Row { path: path.to_owned(), line, problem };
+        let (frame, identity) = (frame_of(&fields).map_err(row)?, identity_of(&fields).map_err(row)?);
+        let confidence = confidence_of(&fields).map_err(row)?.unwrap_or(1.0);
+        let box_in_file = box_of(&fields).map_err(row)?;
+        lines.add(frame, identity, line).map_err(row)?;
+        Ok(TrackRow { frame, identity, box_in_file, confidence })
+    }))
+    .collect()
+}
+
+pub(super) fn parse_annotations(text: &str, path: &Path) -> Result<Vec<Annotation>, MotError> {
+    let mut lines = Lines::default();
+    let mut annotations = Vec::new();
     for (line, fields) in rows_of(text) {
         let row = |problem| MotError::Row { path: path.to_owned(), line, problem };
-        let frame = frame_of(&fields).map_err(row)?;
-        let identity = identity_of(&fields).map_err(row)?;
-        order.check(frame, identity).map_err(row)?;
+        let (frame, identity) = (frame_of(&fields).map_err(row)?, identity_of(&fields).map_err(row)?);
+        let needed = 7;
         let confidence = confidence_of(&fields).map_err(row)?;
-        if is_truth {
-            let needed = 7;
-            let confidence =
-                confidence.ok_or(RowProblem::TooFewFields { found: fields.len(), needed }).map_err(row)?;
-            if confidence != COUNTED {
-                continue;
-            }
+        let confidence =
+            confidence.ok_or(RowProblem::TooFewFields { found: fields.len(), needed }).map_err(row)?;
+        let class = class_of(&fields).map_err(row)?;
+        let is_counted = confidence.trunc() != 0.0;
+        let box_in_file = match box_of(&fields) {
+            Ok(read) => read,
+            Err(problem) if is_counted => return Err(row(problem)),
+            // It stands for nobody.
+            Err(_) => continue,
+        };
+        if is_counted {
+            lines.add(frame, identity, line).map_err(row)?;
         }
-        let box_in_file = box_of(&fields).map_err(row)?;
-        if let Some(first_line) = lines.insert((frame, identity), line) {
-            return Err(row(RowProblem::DuplicateIdentity { identity, frame, first_line }));
-        }
-        rows.push(TrackRow { frame, identity, box_in_file, confidence: confidence.unwrap_or(1.0) });
+        let row = TrackRow { frame, identity, box_in_file, confidence };
+        annotations.push(Annotation { row, class });
     }
-    Ok(rows)
+    Ok(annotations)
 }
 
-/// Files of tracks are sorted by frame, or by identity and then by frame: a frame number may go back only where an
-/// identity begins.
+/// Where each identity is in each frame.
 #[derive(Default)]
-struct Order {
-    previous: Option<u32>,
-    seen: HashSet<u64>,
-}
+struct Lines(HashMap<(u32, u64), usize>);
 
-impl Order {
-    fn check(&mut self, frame: u32, identity: u64) -> Result<(), RowProblem> {
-        let is_new = self.seen.insert(identity);
-        match self.previous.replace(frame).filter(|&previous| frame < previous && !is_new) {
-            Some(previous) => Err(RowProblem::OutOfOrder { frame, previous }),
+impl Lines {
+    fn add(&mut self, frame: u32, identity: u64, line: usize) -> Result<(), RowProblem> {
+        match self.0.insert((frame, identity), line) {
+            Some(first_line) => Err(RowProblem::DuplicateIdentity { identity, frame, first_line }),
             None => Ok(()),
         }
     }
@@ -156,7 +175,22 @@ fn box_of(fields: &[&str]) -> Result<Rect, RowProblem> {
     let (x, y) = (number(fields, 2, "x")?, number(fields, 3, "y")?);
     let (width, height) = (number(fields, 4, "the width")?, number(fields, 5, "the height")?);
     let read = Rect::new(x, y, width, height);
-    if read.is_proper() { Ok(read) } else { Err(RowProblem::Size { width, height }) }
+    if !read.is_proper() {
+        return Err(RowProblem::Size { width, height });
+    }
+    if [x, y, width, height].iter().any(|value| value.abs() > MAX_PIXEL) || !read.area().is_normal() {
+        return Err(RowProblem::Absurd { x, y, width, height });
+    }
+    Ok(read)
+}
+
+/// The class, if there is one; -1 is none.
+fn class_of(fields: &[&str]) -> Result<Option<u32>, RowProblem> {
+    if fields.len() < 8 {
+        return Ok(None);
+    }
+    let class = number(fields, 7, "the class")?;
+    Ok((0.0..1e6).contains(&class).then_some(class as u32))
 }
 
 fn confidence_of(fields: &[&str]) -> Result<Option<f64>, RowProblem> {

@@ -4,10 +4,14 @@ use std::path::Path;
 
 use infopart::geometry::Rect;
 
-use super::{MotError, RowProblem, TrackRow, read::parse_tracks, row_text, sequence_name};
+use super::{
+    MotError, RowProblem, TrackRow,
+    read::{parse_annotations, parse_tracks},
+    row_text, sequence_name,
+};
 
 fn result(text: &str) -> Result<Vec<TrackRow>, MotError> {
-    parse_tracks(text, Path::new("r.txt"), false)
+    parse_tracks(text, Path::new("r.txt"))
 }
 
 fn refused(text: &str) -> (usize, RowProblem) {
@@ -35,8 +39,14 @@ fn rows_are_cut_at_commas_or_blanks_and_lines_count_blank_ones() {
 #[test]
 fn only_ground_truth_is_filtered_and_needs_the_confidence() {
     let text = "1,1,0,0,9,9,1\n1,2,0,0,9,9,0\n1,2,0,0,-9,9,0\n";
-    let truth = |text| parse_tracks(text, Path::new("gt.txt"), true);
-    assert_eq!(truth(text).unwrap().len(), 1);
+    let truth = |text| parse_annotations(text, Path::new("gt.txt"));
+    let counted = |text| truth(text).unwrap().iter().filter(|one| one.is_counted()).count();
+    assert_eq!(counted(text), 1);
+    // None given counts; the class is the eighth field.
+    assert_eq!(counted("1,1,0,0,9,9,-1,-1\n"), 1);
+    let classes: Vec<_> =
+        truth("1,1,0,0,9,9,1,7,0.5\n1,2,0,0,9,9,1,-1\n").unwrap().iter().map(|one| one.class).collect();
+    assert_eq!(classes, [Some(7), None]);
     let short = truth("1,1,0,0,9,9\n").unwrap_err().to_string();
     assert!(short.contains("gt.txt, line 1: 6 fields where 7 are needed"), "{short}");
     assert_eq!(result("1,1,0,0,9,9,0.2\n1,2,0,0,9,9,-1\n").unwrap().len(), 2);
@@ -55,11 +65,21 @@ fn odd_rows_are_refused_with_their_line() {
 }
 
 #[test]
-fn rows_by_frame_or_by_identity_are_in_order_and_others_are_not() {
-    assert_eq!(result("1,1,0,0,9,9\n1,2,0,0,9,9\n2,1,0,0,9,9").unwrap().len(), 3);
-    assert_eq!(result("1,1,0,0,9,9\n2,1,0,0,9,9\n1,2,0,0,9,9").unwrap().len(), 3);
-    let back = RowProblem::OutOfOrder { frame: 1, previous: 2 };
-    assert_eq!(refused("2,1,0,0,9,9\n1,1,0,0,9,9"), (2, back));
+fn rows_stand_in_any_order() {
+    let rows = result("2,1,0,0,9,9\n1,2,0,0,9,9\n1,1,0,0,9,9").unwrap();
+    assert_eq!(rows.iter().map(|row| row.frame).collect::<Vec<_>>(), [2, 1, 1]);
+}
+
+#[test]
+fn boxes_that_no_picture_holds_are_refused() {
+    for (text, width, height) in [
+        ("1,1,0,0,1e30,9", 1e30, 9.0),
+        ("1,1,0,0,1e308,1e308", 1e308, 1e308),
+        ("1,1,0,0,1e-200,1e-200", 1e-200, 1e-200),
+    ] {
+        assert_eq!(refused(text), (1, RowProblem::Absurd { x: 0.0, y: 0.0, width, height }));
+    }
+    assert!(matches!(refused("1,1,-1e12,0,9,9"), (1, RowProblem::Absurd { .. })));
 }
 
 #[test]

@@ -17,7 +17,7 @@ mod models;
 #[cfg(test)]
 mod tests;
 
-pub use models::{CentreModel, ConstantTurn, ConstantVelocity};
+pub use models::{CentreModel, CentreNoise, ConstantTurn, ConstantVelocity};
 
 /// How objects move and what is measured of them, with `N` components of state and `M` of measurement.
 pub trait MotionModel<const N: usize, const M: usize>: Dynamics<N> + Sensor<N, M> + Copy + Sync {

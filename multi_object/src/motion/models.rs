@@ -1,7 +1,7 @@
 //! How the centre of an object moves over the picture. Units are pixels, frames and radians; measured is the centre.
 //!
-//! The noise is that of the well-known MATLAB example of tracking in atrium.mp4, where it says something: position 100,
-//! speed 25, measurement 100 (variances a frame), and 200 and 50 at the start.
+//! The noise is one of two: that of the well-known MATLAB example of tracking in atrium.mp4, where it says something (position 100,
+//! speed 25, measurement 100, variances a frame, and 200 and 50 at the start), or one in proportion to the object.
 
 use infopart::bayes::{
     Covariance, FilterError, State,
@@ -13,11 +13,6 @@ use nalgebra::SMatrix;
 
 use super::MotionModel;
 
-const POSITION_NOISE: f64 = 100.0;
-const SPEED_NOISE: f64 = 25.0;
-const MEASUREMENT_NOISE: f64 = 100.0;
-const FIRST_POSITION: f64 = 200.0;
-const FIRST_SPEED: f64 = 50.0;
 /// The heading of an object seen once may be any: the variance of a uniform angle, pi² / 3.
 const FIRST_HEADING: f64 = std::f64::consts::PI * std::f64::consts::PI / 3.0;
 /// 0.1 rad a frame.
@@ -27,19 +22,54 @@ const FIRST_TURN: f64 = 0.01;
 /// Turn rates, rad a frame, below which the path is taken for straight.
 const STRAIGHT: f64 = 1e-6;
 
+/// Variances, pixels squared.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CentreNoise {
+    /// What a position gains a frame.
+    pub position: f64,
+    /// What a speed gains a frame.
+    pub speed: f64,
+    /// Of a measured centre.
+    pub measurement: f64,
+    /// Of the position of an object seen once.
+    pub first_position: f64,
+    /// Of the speed of an object seen once.
+    pub first_speed: f64,
+}
+
+impl CentreNoise {
+    /// That of the MATLAB example, the same for every object.
+    pub const ATRIUM: Self =
+        Self { position: 100.0, speed: 25.0, measurement: 100.0, first_position: 200.0, first_speed: 50.0 };
+
+    /// In proportion to an object whose area is that of a square of `side` pixels: standard deviations of 1/50 of the side a
+    /// frame for position and for speed, 1/12 for a measurement, which a swinging leg or arm moves; an object seen once is
+    /// where it was seen to 1/8 of its side and moves by up to about 1/4 of it a frame.
+    pub fn for_side(side: f64) -> Self {
+        let squared = |share: f64| (share * side).powi(2);
+        Self {
+            position: squared(1.0 / 50.0),
+            speed: squared(1.0 / 50.0),
+            measurement: squared(1.0 / 12.0),
+            first_position: squared(1.0 / 8.0),
+            first_speed: squared(1.0 / 8.0),
+        }
+    }
+}
+
 /// A model whose state begins with the centre (x, y).
 pub trait CentreModel<const N: usize>: MotionModel<N, 2> + Sized {
-    /// The model with its constants.
+    /// The model under this noise.
     ///
     /// # Errors
-    /// [`FilterError`] never, unless the constants are broken.
-    fn standard() -> Result<Self, FilterError>;
+    /// [`FilterError`] if a variance is not above 0.
+    fn under(noise: CentreNoise) -> Result<Self, FilterError>;
 
     /// What is believed of an object seen once, at `centre`.
     ///
     /// # Errors
-    /// [`FilterError`] if the centre is not finite.
-    fn first_belief(centre: (f64, f64)) -> Result<Gaussian<N>, FilterError>;
+    /// [`FilterError`] if the centre is not finite or a variance is not above 0.
+    fn first_belief(centre: (f64, f64), noise: CentreNoise) -> Result<Gaussian<N>, FilterError>;
 }
 
 fn first<const N: usize>(centre: (f64, f64), variances: [f64; N]) -> Result<Gaussian<N>, FilterError> {
@@ -87,20 +117,22 @@ impl MotionModel<4, 2> for ConstantVelocity {
 }
 
 impl CentreModel<4> for ConstantVelocity {
-    fn standard() -> Result<Self, FilterError> {
+    fn under(noise: CentreNoise) -> Result<Self, FilterError> {
+        let CentreNoise { position, speed, measurement, .. } = noise;
         let mut transition = SMatrix::identity();
         (transition[(0, 2)], transition[(1, 3)]) = (1.0, 1.0);
-        let noise = [POSITION_NOISE, POSITION_NOISE, SPEED_NOISE, SPEED_NOISE];
+        let noise = [position, position, speed, speed];
         Ok(Self(LinearModel {
             transition,
             process_noise: GaussianNoise::diagonal(&State::from(noise))?,
             measurement: SMatrix::identity(),
-            measurement_noise: GaussianNoise::diagonal(&State::from([MEASUREMENT_NOISE; 2]))?,
+            measurement_noise: GaussianNoise::diagonal(&State::from([measurement; 2]))?,
         }))
     }
 
-    fn first_belief(centre: (f64, f64)) -> Result<Gaussian<4>, FilterError> {
-        first(centre, [FIRST_POSITION, FIRST_POSITION, FIRST_SPEED, FIRST_SPEED])
+    fn first_belief(centre: (f64, f64), noise: CentreNoise) -> Result<Gaussian<4>, FilterError> {
+        let CentreNoise { first_position, first_speed, .. } = noise;
+        first(centre, [first_position, first_position, first_speed, first_speed])
     }
 }
 
@@ -150,15 +182,17 @@ impl MotionModel<5, 2> for ConstantTurn {
 }
 
 impl CentreModel<5> for ConstantTurn {
-    fn standard() -> Result<Self, FilterError> {
-        let noise = [POSITION_NOISE, POSITION_NOISE, SPEED_NOISE, HEADING_NOISE, TURN_NOISE];
+    fn under(noise: CentreNoise) -> Result<Self, FilterError> {
+        let CentreNoise { position, speed, measurement, .. } = noise;
+        let noise = [position, position, speed, HEADING_NOISE, TURN_NOISE];
         Ok(Self {
             process_noise: GaussianNoise::diagonal(&State::from(noise))?,
-            measurement_noise: GaussianNoise::diagonal(&State::from([MEASUREMENT_NOISE; 2]))?,
+            measurement_noise: GaussianNoise::diagonal(&State::from([measurement; 2]))?,
         })
     }
 
-    fn first_belief(centre: (f64, f64)) -> Result<Gaussian<5>, FilterError> {
-        first(centre, [FIRST_POSITION, FIRST_POSITION, FIRST_SPEED, FIRST_HEADING, FIRST_TURN])
+    fn first_belief(centre: (f64, f64), noise: CentreNoise) -> Result<Gaussian<5>, FilterError> {
+        let CentreNoise { first_position, first_speed, .. } = noise;
+        first(centre, [first_position, first_position, first_speed, FIRST_HEADING, FIRST_TURN])
     }
 }

@@ -3,7 +3,8 @@
 use infopart::bayes::{State, model::Dynamics};
 
 use super::{
-    CentreModel, ConstantTurn, ConstantVelocity, FilterKind, FilterOptions, MotionModel, StateFilter,
+    CentreModel, CentreNoise, ConstantTurn, ConstantVelocity, FilterKind, FilterOptions, MotionModel,
+    StateFilter,
 };
 
 /// The centres of an object that walks, stops, turns and runs, with a gap.
@@ -21,8 +22,8 @@ fn path() -> Vec<Option<State<2>>> {
 
 /// The estimates before and after each measurement.
 fn estimates<D: CentreModel<N> + MotionModel<N, 2>, const N: usize>(kind: FilterKind) -> Vec<State<N>> {
-    let model = D::standard().unwrap();
-    let belief = D::first_belief((100.0, 50.0)).unwrap();
+    let model = D::under(CentreNoise::ATRIUM).unwrap();
+    let belief = D::first_belief((100.0, 50.0), CentreNoise::ATRIUM).unwrap();
     let mut filter = StateFilter::new(kind, model, belief, FilterOptions::default()).unwrap();
     let mut estimates = Vec::new();
     for seen in path() {
@@ -62,7 +63,7 @@ fn under_constant_turn_they_are_not() {
 
 #[test]
 fn a_turn_runs_on_its_circle_and_without_turn_it_is_a_line() {
-    let model = ConstantTurn::standard().unwrap();
+    let model = ConstantTurn::under(CentreNoise::ATRIUM).unwrap();
     // A quarter circle of radius 10 about (0, 10), in ten steps from the origin.
     let turn = std::f64::consts::FRAC_PI_2 / 10.0;
     let mut state = State::from([0.0, 0.0, 10.0 * turn, 0.0, turn]);
@@ -86,8 +87,8 @@ fn the_same_seed_gives_the_same_bits_and_tracks_have_draws_of_their_own() {
 
 #[test]
 fn the_cost_of_an_assignment_is_a_distance_and_the_logarithm_of_its_spread() {
-    let belief = ConstantVelocity::first_belief((0.0, 0.0)).unwrap();
-    let model = ConstantVelocity::standard().unwrap();
+    let belief = ConstantVelocity::first_belief((0.0, 0.0), CentreNoise::ATRIUM).unwrap();
+    let model = ConstantVelocity::under(CentreNoise::ATRIUM).unwrap();
     let filter = StateFilter::new(FilterKind::Kalman, model, belief, FilterOptions::default()).unwrap();
     // S = (200 + 100) I.
     let cost = filter.assignment_cost(&State::from([30.0, 0.0]));

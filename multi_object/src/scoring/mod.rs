@@ -13,6 +13,7 @@
 
 use crate::motchallenge::TrackRow;
 
+mod benchmark;
 mod clear_motmetrics;
 mod clear_trackeval;
 mod hota;
@@ -23,6 +24,7 @@ mod scores;
 mod tests;
 mod timeline;
 
+pub use benchmark::Benchmark;
 pub use rules::Rules;
 pub use scores::Scores;
 pub use timeline::{FrameOverlaps, Timeline};

@@ -31,12 +31,14 @@ use crate::{
 
 mod association;
 mod box_model;
+mod byte;
 #[cfg(test)]
 mod tests;
 
 use association::Association;
 use box_model::BoxModel;
 pub use box_model::BoxNoise;
+pub use byte::{ByteParameters, ByteTracker, ReportedBox, ScoredBox};
 
 /// How SORT works; the defaults are those of the reference.
 #[derive(Debug, Clone, PartialEq)]

@@ -40,30 +40,76 @@ impl fmt::Display for SceneWarning {
 /// Smallest object, pixels, where nothing else is said.
 pub const USUAL_MIN_AREA: usize = 400;
 
-/// Finds what moves.
+/// Looks out for pictures that are foreground too much and too long.
+#[derive(Debug, Default)]
+pub struct WarningWatch {
+    /// The share of foreground in each of the last frames.
+    shares: VecDeque<f64>,
+    frames: u64,
+    has_warned: bool,
+    warning: Option<SceneWarning>,
+}
+
+impl WarningWatch {
+    /// Takes the next frame's share of foreground.
+    pub fn look(&mut self, share: f64) {
+        self.frames += 1;
+        if self.frames <= SETTLING || self.has_warned {
+            return;
+        }
+        self.shares.push_back(share);
+        if self.shares.len() > FRAMES_LOOKED_AT {
+            self.shares.pop_front();
+        }
+        let foreground = self.shares.iter().sum::<f64>() / FRAMES_LOOKED_AT as f64;
+        self.has_warned = self.shares.len() == FRAMES_LOOKED_AT && foreground > TOO_MUCH;
+        self.warning = self.has_warned.then_some(SceneWarning { frames: self.frames, foreground });
+    }
+
+    /// The warning, once.
+    pub fn take(&mut self) -> Option<SceneWarning> {
+        self.warning.take()
+    }
+}
+
+/// Finds what moves, as the filters paper does.
 #[derive(Debug)]
 pub struct Detector {
     model: BackgroundModel,
     cleaner: MaskCleaner,
-    /// The share of foreground in each of the last frames.
-    shares: VecDeque<f64>,
-    has_warned: bool,
+    regions_in_frame: Vec<Rect>,
+    watch: WarningWatch,
 }
 
 impl Detector {
-    /// A detector that has learnt nothing: 3 Gaussians, 40 training frames, blobs of at least `min_area` pixels, and else
-    /// the background model's and the clean-up's defaults.
+    /// The paper's background model: 3 Gaussians, 40 training frames, and else the model's defaults.
+    pub fn paper_background() -> BackgroundParameters {
+        BackgroundParameters { components: 3, training_frames: 40, ..BackgroundParameters::default() }
+    }
+
+    /// A detector that has learnt nothing, of [`paper_background`](Self::paper_background), blobs of at least `min_area` pixels,
+    /// and else the clean-up's defaults.
     ///
     /// # Errors
     /// [`BackgroundError`] never, unless the constants are broken.
     pub fn new(min_area: usize) -> Result<Self, BackgroundError> {
-        let background =
-            BackgroundParameters { components: 3, training_frames: 40, ..BackgroundParameters::default() };
+        Self::with(Self::paper_background(), CleanUp { min_area, ..CleanUp::default() }, Vec::new())
+    }
+
+    /// A detector that has learnt nothing. Blobs are looked for in the regions given, boxes in the frame; none means everywhere.
+    ///
+    /// # Errors
+    /// [`BackgroundError`], naming the key that cannot be.
+    pub fn with(
+        background: BackgroundParameters,
+        clean_up: CleanUp,
+        regions_in_frame: Vec<Rect>,
+    ) -> Result<Self, BackgroundError> {
         Ok(Self {
             model: BackgroundModel::new(background.check()?),
-            cleaner: MaskCleaner::new(CleanUp { min_area, ..CleanUp::default() }.check()?),
-            shares: VecDeque::new(),
-            has_warned: false,
+            cleaner: MaskCleaner::new(clean_up.check()?),
+            regions_in_frame,
+            watch: WarningWatch::default(),
         })
     }
 
@@ -77,24 +123,15 @@ impl Detector {
     ) -> Result<(Vec<Rect>, Option<SceneWarning>), BackgroundError> {
         let raw = self.model.apply(frame)?;
         let foreground = raw.iter().filter(|&&value| value == FOREGROUND).count();
-        let share = foreground as f64 / raw.len().max(1) as f64;
-        let cleaned = self.cleaner.clean(raw);
-        let blobs = self.cleaner.blobs(&cleaned);
-        let warning = self.judge(share);
-        Ok((blobs.iter().map(|blob| blob.box_in_frame).collect(), warning))
-    }
-
-    fn judge(&mut self, share: f64) -> Option<SceneWarning> {
-        let frames = self.model.frames();
-        if frames <= SETTLING || self.has_warned {
-            return None;
-        }
-        self.shares.push_back(share);
-        if self.shares.len() > FRAMES_LOOKED_AT {
-            self.shares.pop_front();
-        }
-        let foreground = self.shares.iter().sum::<f64>() / FRAMES_LOOKED_AT as f64;
-        self.has_warned = self.shares.len() == FRAMES_LOOKED_AT && foreground > TOO_MUCH;
-        self.has_warned.then_some(SceneWarning { frames, foreground })
+        self.watch.look(foreground as f64 / raw.len().max(1) as f64);
+        let blobs = self.cleaner.blobs(&self.cleaner.clean(raw));
+        let is_wanted = |area: &Rect| {
+            let (x, y) = area.centre();
+            let inside =
+                |region: &Rect| x > region.x && x < region.right() && y > region.y && y < region.bottom();
+            self.regions_in_frame.is_empty() || self.regions_in_frame.iter().any(inside)
+        };
+        let boxes = blobs.iter().map(|blob| blob.box_in_frame).filter(is_wanted).collect();
+        Ok((boxes, self.watch.take()))
     }
 }

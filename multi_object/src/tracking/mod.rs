@@ -22,14 +22,16 @@ use infopart::{
 use crate::{
     assignment::Assigner,
     grid::Grid,
-    motion::{CentreModel, FilterKind, FilterOptions, StateFilter},
+    motion::{CentreModel, CentreNoise, FilterKind, FilterOptions, StateFilter},
 };
 
 mod detector;
+mod reports;
 #[cfg(test)]
 mod tests;
 
-pub use detector::{Detector, SceneWarning, USUAL_MIN_AREA};
+pub use detector::{Detector, SceneWarning, USUAL_MIN_AREA, WarningWatch};
+pub use reports::{Report, Reports, RowKind};
 
 /// How tracks live and die.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -71,9 +73,9 @@ pub struct TrackState {
     pub identity: u64,
     /// Where it was expected, with the size of its last detection before; `None` in its first frame.
     pub predicted_in_frame: Option<Rect>,
-    /// The blob's box, if it was detected.
+    /// Its box as it was seen, if it was.
     pub detected_in_frame: Option<Rect>,
-    /// Where it is now believed to be, with the size of its last detection.
+    /// Where it is now believed to be: with the size of its last detection, or a smoothed one ([`objects`](crate::objects)).
     pub box_in_frame: Rect,
     /// Whether it has been seen often enough to be reported.
     pub is_established: bool,
@@ -123,7 +125,7 @@ impl<D: CentreModel<N>, const N: usize> BlobTracker<D, N> {
     pub fn new(parameters: TrackingParameters) -> Result<Self, FilterError> {
         Ok(Self {
             parameters,
-            model: D::standard()?,
+            model: D::under(CentreNoise::ATRIUM)?,
             tracks: Vec::new(),
             started: 0,
             costs: Grid::default(),
@@ -209,7 +211,7 @@ impl<D: CentreModel<N>, const N: usize> BlobTracker<D, N> {
     fn start(&mut self, alone: &[Rect]) -> Result<(), FilterError> {
         for &seen in alone {
             self.started += 1;
-            let belief = D::first_belief(seen.centre())?;
+            let belief = D::first_belief(seen.centre(), CentreNoise::ATRIUM)?;
             let options = self.parameters.filter_options.for_track(self.started);
             self.tracks.push(Track {
                 identity: self.started,

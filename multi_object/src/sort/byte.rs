@@ -1,0 +1,288 @@
+//! ByteTrack's association (Zhang et al. 2022) on SORT's boxes: detections of low confidence are not thrown away, but may only
+//! prolong tracks. In each frame:
+//!
+//! 1. Predict every track.
+//! 2. Pair detections of high confidence with all tracks: greatest total overlap, each of at least `min_overlap`.
+//! 3. Pair what is left of them with the tracks left over in the same way, both boxes enlarged by `enlarged` of their sides: an
+//!    object that was out of sight is not where it was expected (the buffered overlap of Yang et al. 2023; not in ByteTrack).
+//! 4. Pair those of low confidence with the tracks left over that were seen in the frame before, from `min_overlap_low` on. What
+//!    is then left of them is forgotten.
+//! 5. Update the paired tracks. Of those left over, drop the ones seen once only, and the ones unseen for more than `max_age`.
+//! 6. Start a track from each detection left over that is sure enough.
+//! 7. Report what was seen in this frame at least for the second time, or is in the first frame.
+//!
+//! Only boxes of one class are paired.
+//!
+//! ```
+//! use infopart::geometry::Rect;
+//! use multi_object::sort::{ByteParameters, ByteTracker, ScoredBox};
+//!
+//! // Any detector's boxes, frame by frame; in the fourth it is not sure.
+//! let mut tracker = ByteTracker::new(ByteParameters::default());
+//! for (frame, confidence) in [0.9, 0.9, 0.9, 0.2, 0.9].into_iter().enumerate() {
+//!     let area = Rect::new(10.0 + 3.0 * frame as f64, 20.0, 30.0, 60.0);
+//!     let reported = tracker.update(&[ScoredBox { area, confidence, class: Some(1) }])?;
+//!     assert_eq!((reported.len(), reported[0].identity, reported[0].class), (1, 1, Some(1)));
+//! }
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+use infopart::{bayes::FilterError, geometry::Rect};
+
+use super::{
+    BoxNoise,
+    box_model::{self, BoxModel},
+};
+use crate::{
+    assignment::Assigner,
+    grid::Grid,
+    motion::{FilterKind, FilterOptions, StateFilter},
+};
+
+/// A detector's box.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ScoredBox {
+    /// The box, in coordinates of the caller's choice.
+    pub area: Rect,
+    /// The detector's confidence, usually in [0, 1].
+    pub confidence: f64,
+    /// What it is, if the detector says so.
+    pub class: Option<u32>,
+}
+
+/// A track as it is reported in a frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ReportedBox {
+    /// The track, counted from 1 in the order of their starts.
+    pub identity: u64,
+    /// Its box.
+    pub tracked_box: Rect,
+    /// Its class.
+    pub class: Option<u32>,
+}
+
+/// How ByteTrack works; the defaults are those of its paper, with its `match_thresh` of 0.9 as an overlap of 0.1.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ByteParameters {
+    /// Confidence from which a detection is one of high confidence.
+    pub high: f64,
+    /// Confidence from which a detection is looked at.
+    pub low: f64,
+    /// How much surer than `high` a detection must be to start a track.
+    pub start_margin: f64,
+    /// Least overlap of a pair of steps 2 and 3, in [0, 1].
+    pub min_overlap: f64,
+    /// How much of its sides a box is enlarged by at each of them in step 3; 0 leaves the step out.
+    pub enlarged: f64,
+    /// Least overlap of a pair of step 4, in [0, 1].
+    pub min_overlap_low: f64,
+    /// Frames that a track is kept without a detection.
+    pub max_age: u32,
+    /// What predicts a track.
+    pub filter: FilterKind,
+    /// How the filter runs.
+    pub filter_options: FilterOptions,
+    /// How uncertain boxes are.
+    pub noise: BoxNoise,
+}
+
+impl Default for ByteParameters {
+    fn default() -> Self {
+        Self {
+            high: 0.6,
+            low: 0.1,
+            start_margin: 0.1,
+            min_overlap: 0.1,
+            enlarged: 0.5,
+            min_overlap_low: 0.5,
+            max_age: 30,
+            filter: FilterKind::Kalman,
+            filter_options: FilterOptions::default(),
+            noise: BoxNoise::Reference,
+        }
+    }
+}
+
+#[derive(Debug)]
+struct Track {
+    identity: u64,
+    filter: StateFilter<BoxModel, { box_model::STATE }, { box_model::MEASURED }>,
+    predicted: Rect,
+    class: Option<u32>,
+    hits: u32,
+    /// Frames since the last update; 0 if it was updated in this frame.
+    unseen: u32,
+}
+
+/// The tracker.
+#[derive(Debug)]
+pub struct ByteTracker {
+    parameters: ByteParameters,
+    tracks: Vec<Track>,
+    started: u64,
+    frames: u64,
+    assigner: Assigner,
+    reported: Vec<ReportedBox>,
+}
+
+impl ByteTracker {
+    /// A tracker that has seen nothing.
+    pub fn new(parameters: ByteParameters) -> Self {
+        Self {
+            parameters,
+            tracks: Vec::new(),
+            started: 0,
+            frames: 0,
+            assigner: Assigner::default(),
+            reported: Vec::new(),
+        }
+    }
+
+    /// Steps 1 to 7 for the next frame's detections, also if there are none.
+    ///
+    /// # Errors
+    /// [`FilterError`] if a detection is so odd that no track can start from it.
+    pub fn update(&mut self, detections: &[ScoredBox]) -> Result<&[ReportedBox], FilterError> {
+        self.frames += 1;
+        self.predict();
+        let ByteParameters { high, low, min_overlap, enlarged, min_overlap_low, .. } = self.parameters;
+        let sure: Vec<&ScoredBox> = detections.iter().filter(|one| one.confidence >= high).collect();
+        let unsure: Vec<&ScoredBox> =
+            detections.iter().filter(|one| (low..high).contains(&one.confidence)).collect();
+        let everyone: Vec<usize> = (0..self.tracks.len()).collect();
+        let mut left = self.pair(&sure, &everyone, min_overlap, 0.0);
+        if enlarged > 0.0 {
+            let unseen: Vec<usize> =
+                (0..self.tracks.len()).filter(|&index| self.tracks[index].unseen > 0).collect();
+            left = self.pair(&left, &unseen, min_overlap, enlarged);
+        }
+        let recent: Vec<usize> =
+            everyone.into_iter().filter(|&index| self.tracks[index].unseen == 1).collect();
+        self.pair(&unsure, &recent, min_overlap_low, 0.0);
+        let max_age = self.parameters.max_age;
+        self.tracks.retain(|track| track.unseen == 0 || (track.hits > 1 && track.unseen <= max_age));
+        for one in left {
+            self.start(one)?;
+        }
+        self.report();
+        Ok(&self.reported)
+    }
+
+    /// Step 1.
+    fn predict(&mut self) {
+        self.tracks.retain_mut(|track| {
+            track.unseen += 1;
+            let is_alive = track.filter.predict().is_ok();
+            let prediction = box_model::box_of(&track.filter.belief().mean).filter(|_| is_alive);
+            prediction.map(|area| track.predicted = area).is_some()
+        });
+    }
+
+    /// Steps 2 to 4, and the update of step 5; gives the detections that are left.
+    fn pair<'a>(
+        &mut self,
+        seen: &[&'a ScoredBox],
+        tracks: &[usize],
+        least: f64,
+        enlarged: f64,
+    ) -> Vec<&'a ScoredBox> {
+        let grown = |area: &Rect| {
+            let (w, h) = ((1.0 + 2.0 * enlarged) * area.w, (1.0 + 2.0 * enlarged) * area.h);
+            Rect::new(area.x - enlarged * area.w, area.y - enlarged * area.h, w, h)
+        };
+        let costs = Grid::from_fn(seen.len(), tracks.len(), |row, column| {
+            let track = &self.tracks[tracks[column]];
+            let overlap = match enlarged > 0.0 {
+                true => grown(&seen[row].area).overlap(&grown(&track.predicted)),
+                false => seen[row].area.overlap(&track.predicted),
+            };
+            if overlap < least || seen[row].class != track.class { 0.0 } else { -overlap }
+        });
+        let mut is_left = vec![true; seen.len()];
+        for &(row, column) in self.assigner.solve(&costs) {
+            if costs.at(row, column) >= 0.0 {
+                continue;
+            }
+            let track = &mut self.tracks[tracks[column]];
+            // A measurement that the filter cannot take leaves its prediction.
+            let _ = track.filter.update(&box_model::measured(&seen[row].area));
+            track.hits += 1;
+            track.unseen = 0;
+            is_left[row] = false;
+        }
+        seen.iter().zip(is_left).filter_map(|(one, left)| left.then_some(*one)).collect()
+    }
+
+    /// Step 6.
+    fn start(&mut self, seen: &ScoredBox) -> Result<(), FilterError> {
+        if seen.confidence < self.parameters.high + self.parameters.start_margin {
+            return Ok(());
+        }
+        self.started += 1;
+        let (model, belief) = BoxModel::starting(&seen.area, self.parameters.noise)?;
+        let options = self.parameters.filter_options.for_track(self.started);
+        self.tracks.push(Track {
+            identity: self.started,
+            filter: StateFilter::new(self.parameters.filter, model, belief, options)?,
+            predicted: seen.area,
+            class: seen.class,
+            hits: 1,
+            unseen: 0,
+        });
+        Ok(())
+    }
+
+    /// Step 7.
+    fn report(&mut self) {
+        let is_first = self.frames == 1;
+        let due = self.tracks.iter().filter(|track| track.unseen == 0 && (track.hits > 1 || is_first));
+        self.reported.clear();
+        self.reported.extend(due.filter_map(|track| {
+            let tracked_box = box_model::box_of(&track.filter.belief().mean)?;
+            Some(ReportedBox { identity: track.identity, tracked_box, class: track.class })
+        }));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn run(frames: &[&[(f64, f64, u32)]]) -> Vec<Vec<u64>> {
+        let mut tracker = ByteTracker::new(ByteParameters::default());
+        (frames.iter())
+            .map(|seen| {
+                let boxes: Vec<ScoredBox> = (seen.iter())
+                    .map(|&(x, confidence, class)| ScoredBox {
+                        area: Rect::new(x, 50.0, 20.0, 40.0),
+                        confidence,
+                        class: Some(class),
+                    })
+                    .collect();
+                tracker.update(&boxes).unwrap().iter().map(|one| one.identity).collect()
+            })
+            .collect()
+    }
+
+    #[test]
+    fn a_weak_box_prolongs_a_track_and_starts_none() {
+        let strong: &[(f64, f64, u32)] = &[(100.0, 0.9, 1)];
+        let weak: &[(f64, f64, u32)] = &[(100.0, 0.2, 1)];
+        let none: &[(f64, f64, u32)] = &[];
+        assert_eq!(run(&[strong, strong, weak, weak, strong]), vec![vec![1]; 5]);
+        assert_eq!(run(&[weak, weak, weak]), vec![Vec::<u64>::new(); 3]);
+        // After a gap a weak box is not enough, and a strong one finds the track again.
+        assert_eq!(run(&[strong, strong, none, weak, strong]), [vec![1], vec![1], vec![], vec![], vec![1]]);
+        // Below 0.7 nothing starts, below 0.1 nothing is looked at.
+        assert_eq!(run(&[&[(100.0, 0.65, 1)], &[(100.0, 0.65, 1)]]), vec![Vec::<u64>::new(); 2]);
+    }
+
+    #[test]
+    fn one_seen_once_is_forgotten_and_classes_are_not_mixed() {
+        let far: &[(f64, f64, u32)] = &[(100.0, 0.9, 1), (300.0, 0.9, 1)];
+        let near: &[(f64, f64, u32)] = &[(100.0, 0.9, 1)];
+        assert_eq!(run(&[near, far, near, far, far]), [vec![1], vec![1], vec![1], vec![1], vec![1, 3]]);
+        let other: &[(f64, f64, u32)] = &[(100.0, 0.9, 2)];
+        assert_eq!(run(&[near, near, other, other]), [vec![1], vec![1], vec![], vec![2]]);
+    }
+}
