@@ -92,7 +92,7 @@ fn whatever_a_tracker_does_fails_its_own_jobs_alone_and_by_name() {
         ("not_a_number", "answer=1,2,nan,4".into(), "not finite"),
         ("three", "answer=1,2,3".into(), "too few numbers"),
         ("quits", at_4("echo \"@@TRAX:quit \\\"trax.reason=no memory\\\"\""), "no memory"),
-        ("closes", at_4("{ exec >&-; sleep 1000; }"), "it ended at frame 4"),
+        ("closes", at_4("{ exec >&-; sleep 1000; }"), "did not answer at frame 4"),
         ("repeats", at_4("echo \"@@TRAX:hello\""), "it said `hello`"),
         ("floods", at_4("{ head -c 3000000 /dev/zero; exit 5; }"), "exit status: 5"),
         ("fine", String::new(), ""),
