@@ -85,16 +85,16 @@ fn whatever_a_tracker_does_fails_its_own_jobs_alone_and_by_name() {
     let scene = scene();
     let at_4 = |what: &str| format!("before='[ $number = 4 ] && {what}'");
     let trackers: Vec<(&str, String, &str)> = vec![
-        ("crashes", at_4("kill -SEGV $$"), "it ended to frame 4: exit status: 139; last on standard error"),
+        ("crashes", at_4("kill -SEGV $$"), "it ended at frame 4: exit status: 139; last on standard error"),
         ("leaves", at_4("exit 3"), "exit status: 3"),
-        ("hangs", at_4("sleep 1000"), "did not answer to frame 4 within 1.5 seconds"),
+        ("hangs", at_4("sleep 1000"), "did not answer at frame 4 within 1.5 seconds"),
         ("garbage", "answer='some words'".into(), "is no list of numbers"),
         ("not_a_number", "answer=1,2,nan,4".into(), "not finite"),
         ("three", "answer=1,2,3".into(), "too few numbers"),
         ("quits", at_4("echo \"@@TRAX:quit \\\"trax.reason=no memory\\\"\""), "no memory"),
-        ("closes", at_4("exec >&-; sleep 1000"), "it ended to frame 4"),
+        ("closes", at_4("{ exec >&-; sleep 1000; }"), "did not answer at frame 4"),
         ("repeats", at_4("echo \"@@TRAX:hello\""), "it said `hello`"),
-        ("floods", at_4("head -c 3000000 /dev/zero; exit 5"), "exit status: 5"),
+        ("floods", at_4("{ head -c 3000000 /dev/zero; exit 5; }"), "exit status: 5"),
         ("fine", String::new(), ""),
     ];
     let listed: Vec<(&str, &str)> =
@@ -123,13 +123,13 @@ fn a_tracker_that_cannot_be_spoken_to_is_told_before_anything_is_run() {
     let scene = scene();
     scene.write(
         "trackers.toml",
-        "[missing]\ncommand = \"no_such_program --fast\"\n[silent]\ncommand = \"sleep 1000\"\nframe_timeout = 0.5\n\
+        "[missing]\ncommand = \"no_such_program fast\"\n[silent]\ncommand = \"sleep 1000\"\nframe_timeout = 0.5\n\
          [memory]\ncommand = '''echo '@@TRAX:hello \"trax.image=memory;\"' '''\n[fine]\ncommand = \"sh tracker.sh\"\n",
     );
     let line = "run --data data --sequences Cid --out results --trackers-file trackers.toml";
     let told = [
-        "tracker missing: `no_such_program --fast`: it ended before its introduction: exit status: 127",
-        "tracker silent: `sleep 1000`: it did not answer before its introduction within 0.5 seconds",
+        "tracker missing: `no_such_program fast`: it ended at its introduction: exit status: 127",
+        "tracker silent: `sleep 1000`: it did not answer at its introduction within 0.5 seconds",
         "tracker memory: ",
         "takes no paths",
         "1 jobs: 0 were there, 1 done, 0 failed",

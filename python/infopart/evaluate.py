@@ -169,7 +169,7 @@ class Run:
     def _work_on(self, ray: Any, cpus: float, gpus: Mapping[str, float], retries: int, progress: bool) -> None:
         jobs = [job for job in self.plan() if not job["done"]]
         # A job is killed with its worker, so that one worker a job is what a retry repeats.
-        task = ray.remote(max_retries=retries, max_calls=1)(_job)
+        task = ray.remote(max_retries=retries, max_calls=1, retry_exceptions=[_Killed])(_job)
         waiting = {}
         for job in jobs:
             resources = {"num_cpus": cpus, "num_gpus": gpus.get(job["tracker"], 0)}
@@ -182,7 +182,7 @@ class Run:
             try:
                 files, said = ray.get(handle)
             except ray.exceptions.RayError as error:
-                files, said = {}, f"{job['id']}: its worker was lost {retries + 1} times: {str(error).splitlines()[0]}"
+                files, said = {}, f"{job['id']}: it was lost {retries + 1} times: {str(error).strip().splitlines()[-1]}"
             self._keep(files)
             if said:
                 failed.append(said)
@@ -217,6 +217,10 @@ def _identity(run_file: bytes) -> Any:
     return run
 
 
+class _Killed(RuntimeError):
+    """A job whose program a signal ended, as with a machine that is taken away: it is tried again."""
+
+
 def _job(program: str, words: list[str], job: str) -> tuple[dict[str, bytes], str]:
     """Runs one job where the cluster put it: the files that it made, and what failed."""
     if shutil.which(program) is None:
@@ -226,7 +230,11 @@ def _job(program: str, words: list[str], job: str) -> tuple[dict[str, bytes], st
         done = subprocess.run(command, capture_output=True, text=True)
         root = Path(folder)
         files = {str(path.relative_to(root)): path.read_bytes() for path in root.rglob("*") if path.is_file()}
-    return files, done.stderr.strip() if done.returncode else ""
+    if done.returncode < 0:
+        raise _Killed(f"otb_eval was ended by signal {-done.returncode}")
+    if f"{job}.txt" in files:
+        return files, ""
+    return files, done.stderr.strip() or f"{job}: otb_eval ended with exit code {done.returncode} and left no result"
 
 
 class _Progress:

@@ -111,6 +111,7 @@ fn is_done(work: &Work, job: &Job) -> bool {
 /// Hears what trackers in other processes say of themselves; of one that says nothing sensible no job is run.
 fn prepare(work: &mut Work) {
     let Work { factories, jobs, problems, .. } = work;
+    factories.retain(|factory| jobs.iter().any(|job| job.tracker == factory.name()));
     factories.retain_mut(|factory| match factory.prepare() {
         Ok(()) => true,
         Err(error) => {

@@ -48,7 +48,7 @@ fn converse(
         let state = if number == 0 {
             session.initialize(image, first_box)
         } else {
-            session.frame(image, &format!("to frame {}", job.first_frame() + number))
+            session.frame(image, &format!("at frame {}", job.first_frame() + number))
         }?;
         round_trips.push(since.elapsed().as_secs_f64());
         own.extend(state.own_seconds);

@@ -62,7 +62,7 @@ impl<'a> Session<'a> {
 
     /// Hears what the tracker says of itself, and whether it can be spoken to.
     pub fn introduction(&mut self) -> Result<Introduction, Trouble> {
-        let hello = self.expect(Kind::Hello, "before its introduction")?;
+        let hello = self.expect(Kind::Hello, "at its introduction")?;
         let takes = |name: &str, what: &str| {
             hello.property(name).is_none_or(|list| list.split([';', ',']).any(|word| word.trim() == what))
         };
@@ -89,12 +89,12 @@ impl<'a> Session<'a> {
         let region = if takes_rectangles { rectangle(box_in_frame) } else { corners(box_in_frame) };
         if version < 4 {
             let message = Message::new(Kind::Initialize).with(address(image)).with(region);
-            self.say(&message, "when it was to start")?;
+            self.say(&message, "at its first frame")?;
         } else {
-            self.say(&Message::new(Kind::Initialize).with(region), "when it was to start")?;
-            self.say(&Message::new(Kind::Frame).with(address(image)), "when it was to start")?;
+            self.say(&Message::new(Kind::Initialize).with(region), "at its first frame")?;
+            self.say(&Message::new(Kind::Frame).with(address(image)), "at its first frame")?;
         }
-        self.state("to the first frame")
+        self.state("at its first frame")
     }
 
     /// Finds the target in the next image, which the message calls `what`.
