@@ -145,8 +145,7 @@ mod tests {
 
     #[test]
     fn a_tracker_that_was_not_started_is_saved_too() {
-        let mut parameters = Parameters::default();
-        parameters.seed = 77;
+        let parameters = Parameters { seed: 77, ..Parameters::default() };
         let tracker = InfoPart::new(parameters.check().unwrap());
         let loaded = InfoPart::load(&tracker.save().unwrap()).unwrap();
         assert_eq!(loaded.parameters().seed, 77);
