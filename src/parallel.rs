@@ -1,6 +1,6 @@
 //! Work shared among threads, or done on the calling one: the only place that knows which.
 //!
-//! Work comes as two closures ([`join`]) or as [pieces](Pieces) of slices ([`for_each`]). Each piece is written by one
+//! Work comes as two closures (`join`) or as pieces (`Pieces`) of slices (`for_each`). Each piece is written by one
 //! thread and nothing is summed across pieces, so the results are the same bits however the work is shared.
 
 use std::{cell::Cell, fmt};

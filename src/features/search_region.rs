@@ -42,7 +42,7 @@ impl SearchRegion {
     }
 }
 
-/// A box in cells of a [`RegionIntegrals`], from its top left corner.
+/// A box in cells of a [`RegionIntegrals`](super::region::RegionIntegrals), from its top left corner.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BoxInRegion {
     /// Left edge, cells.
