@@ -36,7 +36,7 @@ impl NativeSequence {
     #[new]
     #[pyo3(signature = (path, target = None, start = None, end = None))]
     fn new(path: &str, target: Option<usize>, start: Option<usize>, end: Option<usize>) -> PyResult<Self> {
-        let options = OpenOptions { target, start, end, origin: None };
+        let options = OpenOptions { target, start, end, ..OpenOptions::default() };
         let sequence = open(path, &options).map_err(|error| PyValueError::new_err(error.to_string()))?;
         let numbers = |Rect { x, y, w, h }| (x, y, w, h);
         Ok(Self {
