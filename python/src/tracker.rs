@@ -139,6 +139,7 @@ impl NativeTracker {
                 dict.set_item("mean_stump", evidence.mean_stump)?;
                 dict.set_item("hog_distance", evidence.hog_distance)?;
                 dict.set_item("peak_sharpness", evidence.peak_sharpness)?;
+                dict.set_item("likeness", evidence.likeness)?;
                 dict.set_item("lowest_log_odds", evidence.lowest_log_odds)?;
                 PyResult::Ok(dict)
             });
