@@ -13,6 +13,9 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+# Each network that OpenCV 5 reads warns of a setting that it does not heed.
+os.environ.setdefault("OPENCV_LOG_LEVEL", "ERROR")
+
 try:
     import cv2
 except ImportError as _error:
@@ -115,8 +118,6 @@ class NanoTrack(OpenCv):
 
     def create(self) -> Any:
         """A new tracker."""
-        # Each network that OpenCV 5 reads warns of a setting that it does not heed.
-        cv2.setLogLevel(2)
         parameters = cv2.TrackerNano_Params()
         parameters.backbone, parameters.neckhead = map(str, self._files)
         return cv2.TrackerNano_create(parameters)
