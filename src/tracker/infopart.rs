@@ -229,7 +229,7 @@ impl Target {
             learnable: true,
             identity: Identity::new(Portrait::of(integrals, part)),
             judge: Judge::default(),
-            search: Search::default(),
+            search: Search::new(&box_in_frame),
             gate: LearningGate::new(parameters),
             set_estimates: Vec::with_capacity(parameters.particle_sets),
             others: Vec::new(),

@@ -84,6 +84,11 @@ pub(super) struct Search {
 }
 
 impl Search {
+    /// A search that has not begun, for a target whose first whole box is that.
+    pub fn new(full: &Rect) -> Self {
+        Self { size: (full.w, full.h), ..Self::default() }
+    }
+
     /// Takes note of an estimate; true while the target is to be searched (step 1).
     pub fn goes_on(&mut self, full: &Rect, status: Status) -> bool {
         self.frame += 1;
@@ -186,11 +191,9 @@ mod tests {
 
     const FULL: Rect = Rect { x: 40.0, y: 30.0, w: 20.0, h: 40.0 };
 
-    /// A search that has seen the target.
+    /// The target was never tracked but in the first frame.
     fn search() -> Search {
-        let mut search = Search::default();
-        assert!(!search.goes_on(&FULL, Status::Tracking));
-        search
+        Search::new(&FULL)
     }
 
     #[test]
