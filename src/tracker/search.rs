@@ -171,7 +171,13 @@ impl Search {
         };
         self.meetings = if self.suspect.is_some_and(near) { self.meetings + 1 } else { 1 };
         self.suspect = Some(full);
-        self.meetings >= MEETINGS
+        let is_found = self.meetings >= MEETINGS;
+        if is_found {
+            // From here on it is the target: a search would begin anew.
+            self.forget_suspect();
+            (self.lost, self.unseen) = (0, 0);
+        }
+        is_found
     }
 
     fn forget_suspect(&mut self) {
@@ -213,6 +219,7 @@ mod tests {
         assert!(!search.meets(Some(FULL)) && !search.meets(Some(near)));
         assert_eq!(search.suspect(), Some(near));
         assert!(search.meets(Some(near)));
+        assert!(search.suspect().is_none() && !search.meets(Some(near)), "a find is told once");
         assert!(!search.meets(Some(FULL.translated(90.0, 0.0))), "somebody else");
         assert!(!search.meets(None) && search.suspect().is_none());
         assert!(!search.meets(Some(FULL)) && !search.meets(Some(FULL)));
