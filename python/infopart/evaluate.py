@@ -208,7 +208,7 @@ class Run:
 
 
 def _is_result(name: str) -> bool:
-    return name.endswith(".txt") and not name.endswith("_time.txt")
+    return name.endswith(".txt") and not name.endswith(("_time.txt", "_confidence.txt"))
 
 
 def _identity(run_file: bytes) -> Any:

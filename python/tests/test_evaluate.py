@@ -42,7 +42,8 @@ def bench(tmp_path):
 
 
 def boxes_below(folder):
-    files = (path for path in folder.rglob("*.txt") if not path.name.endswith("_time.txt"))
+    beside = ("_time.txt", "_confidence.txt")
+    files = (path for path in folder.rglob("*.txt") if not path.name.endswith(beside))
     return {str(path.relative_to(folder)): path.read_bytes() for path in files}
 
 
