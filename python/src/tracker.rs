@@ -140,6 +140,7 @@ impl NativeTracker {
                 dict.set_item("hog_distance", evidence.hog_distance)?;
                 dict.set_item("peak_sharpness", evidence.peak_sharpness)?;
                 dict.set_item("likeness", evidence.likeness)?;
+                dict.set_item("scenery", evidence.scenery)?;
                 dict.set_item("lowest_log_odds", evidence.lowest_log_odds)?;
                 PyResult::Ok(dict)
             });

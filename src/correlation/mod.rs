@@ -10,5 +10,6 @@ mod lattice;
 mod line_transform;
 pub mod response;
 pub mod scale;
+pub mod shift;
 pub mod spectrum;
 pub mod window;

@@ -88,6 +88,13 @@ impl Rect {
     pub fn translated(&self, dx: f64, dy: f64) -> Self {
         Self { x: self.x + dx, y: self.y + dy, ..*self }
     }
+
+    /// The box about the same centre whose width and height are these times its own.
+    pub fn scaled_about_centre(&self, (across, down): (f64, f64)) -> Self {
+        let (x, y) = self.centre();
+        let (w, h) = (across * self.w, down * self.h);
+        Self::new(x - w / 2.0, y - h / 2.0, w, h)
+    }
 }
 
 /// Which number the first pixel has in a file's boxes. Inside the program it is always 0.

@@ -2,7 +2,8 @@
 //!
 //! Steps, each frame:
 //! 1. the log-odds of the frame alone, from its evidence,
-//! 2. the lowest of these so far, which is forgotten little by little: a target that was out of sight may be another since,
+//! 2. the lowest of these so far, which is forgotten little by little: a target that was out of sight, or in a scene that was cut,
+//!    may be another since,
 //! 3. the confidence, from both,
 //! 4. the confidence in one word.
 
@@ -40,12 +41,19 @@ const WITHOUT_CORRELATION: OfFrame =
 const WITH_MEMORY: WithMemory = WithMemory { intercept: 0.23, per_log_odds: 0.69, per_lowest: 0.31 };
 
 /// From this likeness on, identity says nothing against the target.
-const LIKE: f64 = 0.35;
+const LIKE: f64 = 0.5;
 /// What a unit of likeness below that takes away from the log-odds.
-const PER_UNLIKENESS: f64 = 10.0;
+const PER_UNLIKENESS: f64 = 20.0;
+
+/// Up to this correlation with the scenery, the scene says nothing against the target.
+const OTHER_THAN_SCENERY: f64 = 0.65;
+/// What a unit of correlation above that takes away from the log-odds.
+const PER_SCENERY: f64 = 20.0;
 
 /// The lowest log-odds before anything was seen, and at most.
 const HIGHEST: f64 = 4.0;
+/// Lower log-odds are remembered as these.
+const LOWEST: f64 = -2.0;
 /// What the lowest log-odds rise by in a frame.
 const FORGOTTEN: f64 = 0.005;
 
@@ -72,13 +80,18 @@ impl Default for Judge {
 }
 
 impl Judge {
+    /// The scene was cut: whoever is seen from here on may be another.
+    pub fn doubt(&mut self) {
+        self.lowest_log_odds = self.lowest_log_odds.min(LOWEST);
+    }
+
     /// Steps 1 to 3; writes into the evidence what was remembered. Without the correlation filter there is no memory: the frame
     /// speaks alone.
     pub fn believe(&mut self, evidence: &mut Evidence) -> Belief {
         let of_frame = log_odds(evidence);
         let mut with_memory = of_frame;
         if evidence.peak_sharpness.is_some() {
-            self.lowest_log_odds = of_frame.min(self.lowest_log_odds + FORGOTTEN).min(HIGHEST);
+            self.lowest_log_odds = of_frame.max(LOWEST).min(self.lowest_log_odds + FORGOTTEN).min(HIGHEST);
             evidence.lowest_log_odds = Some(self.lowest_log_odds);
             let WithMemory { intercept, per_log_odds, per_lowest } = WITH_MEMORY;
             with_memory = intercept + per_log_odds * of_frame + per_lowest * self.lowest_log_odds;
@@ -102,6 +115,7 @@ fn log_odds(evidence: &Evidence) -> f64 {
         - model.per_hog_distance * evidence.hog_distance
         + model.per_log_sharpness * sharpness.ln()
         - PER_UNLIKENESS * (LIKE - evidence.likeness).max(0.0)
+        - PER_SCENERY * (evidence.scenery.unwrap_or(0.0) - OTHER_THAN_SCENERY).max(0.0)
 }
 
 fn probability(log_odds: f64) -> f64 {
@@ -124,7 +138,14 @@ mod tests {
     use super::*;
 
     fn evidence(mean_stump: f64, hog_distance: f64, peak_sharpness: Option<f64>) -> Evidence {
-        Evidence { mean_stump, hog_distance, peak_sharpness, likeness: 0.7, lowest_log_odds: None }
+        Evidence {
+            mean_stump,
+            hog_distance,
+            peak_sharpness,
+            likeness: 0.7,
+            scenery: None,
+            lowest_log_odds: None,
+        }
     }
 
     fn clear() -> Evidence {
@@ -149,7 +170,8 @@ mod tests {
         let before = judge.believe(&mut clear());
         let mut hidden = evidence(-0.8, 0.9, Some(8.0));
         judge.believe(&mut hidden);
-        assert_eq!(hidden.lowest_log_odds, Some(log_odds(&hidden)));
+        assert!(log_odds(&hidden) < LOWEST);
+        assert_eq!(hidden.lowest_log_odds, Some(LOWEST));
         let mut again = clear();
         let after = judge.believe(&mut again);
         assert_eq!(after.of_frame, before.of_frame);
@@ -157,6 +179,29 @@ mod tests {
         assert!((again.lowest_log_odds.unwrap() - hidden.lowest_log_odds.unwrap() - FORGOTTEN).abs() < 1e-12);
         let later = (0..2000).map(|_| judge.believe(&mut clear())).last().unwrap();
         assert_eq!(later.confidence, before.confidence);
+    }
+
+    #[test]
+    fn another_and_scenery_are_not_the_target_however_well_they_fit() {
+        let sure = |likeness, scenery| {
+            let mut evidence = Evidence { likeness, scenery: Some(scenery), ..clear() };
+            Judge::default().believe(&mut evidence).confidence
+        };
+        assert_eq!(status(sure(0.6, 0.5)), Status::Tracking);
+        assert_eq!(sure(0.6, 0.5), sure(0.9, 0.0), "neither says anything");
+        assert!(sure(0.3, 0.0) < sure(0.4, 0.0) && sure(0.6, 0.9) < sure(0.6, 0.7));
+        assert_eq!([status(sure(0.1, 0.0)), status(sure(0.9, 0.97))], [Status::Lost; 2]);
+    }
+
+    #[test]
+    fn after_a_cut_the_target_is_doubted_as_after_a_loss() {
+        let (mut cut, mut lost) = (Judge::default(), Judge::default());
+        cut.doubt();
+        lost.believe(&mut evidence(-1.0, 2.0, Some(1.0)));
+        let [after_cut, after_loss] =
+            [&mut cut, &mut lost].map(|judge| judge.believe(&mut clear()).confidence);
+        assert_eq!(after_cut, after_loss);
+        assert!(after_cut < Judge::default().believe(&mut clear()).confidence);
     }
 
     #[test]

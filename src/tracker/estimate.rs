@@ -63,8 +63,11 @@ pub struct Evidence {
     pub peak_sharpness: Option<f64>,
     /// How much more the part is like what the target looked like than like others, in [0, 1].
     pub likeness: f64,
-    /// The lowest log-odds that a frame alone has given since the first, forgotten by 0.005 a frame: after a loss the target may
-    /// be another. `None` without the filter.
+    /// How much the part looks like that place of the scene did when the target was elsewhere, a correlation in [0, 1]: scenery, or
+    /// somebody who stands there. `None` without the filters.
+    pub scenery: Option<f64>,
+    /// The lowest log-odds, from -2 on, that a frame alone has given since the first, forgotten by 0.005 a frame: after a loss the
+    /// target may be another. `None` without the filters.
     pub lowest_log_odds: Option<f64>,
 }
 

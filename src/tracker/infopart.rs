@@ -33,13 +33,14 @@ use crate::{
 };
 use rand::RngExt;
 
+mod judging;
 mod recovery;
 
 use super::{
     TrackError, Tracker,
-    confidence::{Belief, Judge, status},
+    confidence::Judge,
     cues::{Cues, Fit, Lesson},
-    estimate::{BoxWarning, Estimate, Evidence, StageTime, Status, WeightedBox},
+    estimate::{BoxWarning, Estimate, StageTime, Status, WeightedBox},
     first_box,
     identity::{Identity, Portrait},
     learning_gate::LearningGate,
@@ -47,6 +48,7 @@ use super::{
     parameters::CheckedParameters,
     proposal::PeakProposal,
     sampling::Sampler,
+    scene::Scene,
     search::Search,
     stopwatch::Stopwatch,
     streams::{Use, stream},
@@ -95,6 +97,8 @@ pub(super) struct Target {
     /// Whether the last frame's estimate may be learnt.
     learnable: bool,
     identity: Identity,
+    /// What it stands before; only where cues look over a window.
+    scene: Option<Scene>,
     judge: Judge,
     search: Search,
     gate: LearningGate,
@@ -189,7 +193,8 @@ impl InfoPart {
         self.stopwatch.lap("integral images");
         target.correct(parameters, &self.integrals);
         self.stopwatch.lap("likelihood");
-        let fit = target.judge(parameters, &self.integrals);
+        target.see_scene(&frame);
+        let fit = target.judge(parameters, &frame, &self.integrals);
         self.stopwatch.lap("estimate");
         target.learn(parameters, &frame, &mut self.integrals, &fit);
         self.stopwatch.lap("learning");
@@ -218,16 +223,18 @@ impl Target {
         );
         let mut estimate = Estimate::new(box_in_frame, part, 1.0, Status::Tracking);
         estimate.effective_sample_size = parameters.particles as f64;
+        let cues = Cues::new(parameters, pool, Hog::of(integrals, &template), box_in_frame);
         Self {
             frame_size: (frame.width(), frame.height()),
             aspect: part.h / part.w,
             limits: Limits::around(&part, frame.width(), frame.height()),
             frame: 0,
             sets: (0..parameters.particle_sets).map(|set| particle_set(parameters, &part, set)).collect(),
-            cues: Cues::new(parameters, pool, Hog::of(integrals, &template), box_in_frame),
             estimate,
             learnable: true,
             identity: Identity::new(Portrait::of(integrals, part)),
+            scene: cues.look_over_window().then(|| Scene::new(frame, box_in_frame)),
+            cues,
             judge: Judge::default(),
             search: Search::new(&box_in_frame),
             gate: LearningGate::new(parameters),
@@ -308,43 +315,6 @@ impl Target {
             let mut rng = stream(parameters.seed, self.frame | 1 << 40, Use::Particles(set));
             self.set_estimates.push(particles.correct(&observation, &mut rng));
         }
-    }
-
-    /// Steps 3b and 3c.
-    fn judge(&mut self, parameters: &CheckedParameters, integrals: &RegionIntegrals) -> Fit {
-        let (mean, covariance) = merge(&self.set_estimates);
-        let part = box_of(&mean, self.aspect);
-        let full = parameters.region.full_from_part(part);
-        let (fit, mut evidence) = self.evidence(parameters, integrals, part, full);
-        let Belief { of_frame, confidence } = self.judge.believe(&mut evidence);
-        self.learnable = self.gate.opens(of_frame, fit.response) && self.search.suspect().is_none();
-        self.estimate = Estimate::new(full, part, confidence, status(confidence));
-        self.estimate.effective_sample_size =
-            self.set_estimates.iter().map(|set| set.effective_sample_size).sum();
-        self.estimate.covariance = covariance;
-        self.estimate.evidence = Some(evidence);
-        self.cues.credit(&full);
-        fit
-    }
-
-    /// How well a part and its whole box fit, and what that tells.
-    fn evidence(
-        &self,
-        parameters: &CheckedParameters,
-        integrals: &RegionIntegrals,
-        part: Rect,
-        full: Rect,
-    ) -> (Fit, Evidence) {
-        let fit = self.cues.fit(&self.cues.hypothesis(integrals, part, full));
-        let likeness = self.identity.likeness(&Portrait::of(integrals, part));
-        let evidence = Evidence {
-            mean_stump: f64::from(fit.score) / parameters.stumps as f64,
-            hog_distance: f64::from(fit.hog_distance),
-            peak_sharpness: self.cues.peak_sharpness(),
-            likeness: f64::from(likeness),
-            lowest_log_odds: None,
-        };
-        (fit, evidence)
     }
 
     /// Step 2.

@@ -15,6 +15,7 @@ mod proposal;
 mod sampling;
 #[cfg(feature = "save")]
 mod saved;
+mod scene;
 mod search;
 mod stopwatch;
 mod streams;

@@ -1,8 +1,8 @@
 //! Looking for a target that was lost, over the whole frame.
 //!
 //! Steps, in each frame after the estimate:
-//! 1. the search begins when the target has been lost for some frames in a row, or not been seen for more, and ends when it is
-//!    tracked again,
+//! 1. the search begins when the target has been lost for some frames in a row, or not been seen for more or since a cut, and ends
+//!    when it is tracked again,
 //! 2. where to look: around the suspect, if there is one; else around the place whose colours are most the target's of those that
 //!    were not looked at lately, and around the next of a tour of places that covers the frame,
 //! 3. (in `infopart/recovery.rs`) of the places there that the cues over the window answer to, the one most like the target by evidence
@@ -102,6 +102,11 @@ impl Search {
         self.unseen += 1;
         self.lost = if status == Status::Lost { self.lost + 1 } else { 0 };
         self.unseen >= UNSEEN || self.lost >= LOST
+    }
+
+    /// The scene was cut: a target that is not tracked then is searched at once.
+    pub fn hurry(&mut self) {
+        self.unseen = UNSEEN;
     }
 
     /// Where the suspect was.
@@ -210,6 +215,11 @@ mod tests {
         let mut unsure = search();
         let first = (1..).find(|_| unsure.goes_on(&FULL, Status::Uncertain));
         assert_eq!(first, Some(10));
+        let mut after_cut = search();
+        after_cut.hurry();
+        assert!(!after_cut.goes_on(&FULL, Status::Tracking), "it is still there");
+        after_cut.hurry();
+        assert!(after_cut.goes_on(&FULL, Status::Uncertain));
     }
 
     #[test]

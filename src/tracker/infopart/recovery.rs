@@ -15,7 +15,7 @@ use super::{
 /// Places in a window that are looked at closer.
 const SUSPECTS: usize = 2;
 /// The least merit of a suspect: its probability from the frame alone times its likeness.
-const MERIT: f64 = 0.6;
+const MERIT: f64 = 0.55;
 
 impl Target {
     /// Looks for the target if it is not seen, and goes where it was found.
@@ -60,7 +60,7 @@ impl Target {
     /// Whether the cues answer in the window last looked over, around a whole box, to a place of more merit than the best; it is
     /// the best then.
     fn find_better(
-        &self,
+        &mut self,
         parameters: &CheckedParameters,
         frame: &FrameView<'_>,
         integrals: &mut RegionIntegrals,
@@ -72,10 +72,14 @@ impl Target {
             (0.0..frame.width() as f64).contains(&x) && (0.0..frame.height() as f64).contains(&y)
         };
         let mut is_better = false;
-        for full in self.cues.answers(around).take(SUSPECTS).filter(is_inside) {
+        let answers: [Option<Rect>; SUSPECTS] = {
+            let mut answers = self.cues.answers(around);
+            std::array::from_fn(|_| answers.next())
+        };
+        for full in answers.into_iter().flatten().filter(is_inside) {
             let part = parameters.region.part_from_full(full);
             integrals.compute(frame, search_region(part, &part, parameters.max_part_cells));
-            let (_, evidence) = self.evidence(parameters, integrals, part, full);
+            let (_, evidence) = self.evidence(parameters, frame, integrals, part, full);
             let merit = confidence::of_frame(&evidence) * evidence.likeness;
             if merit > best.merit {
                 (*best, is_better) = (Suspect { full, merit }, true);
@@ -94,7 +98,7 @@ impl Target {
     ) {
         let part = parameters.region.part_from_full(full);
         integrals.compute(frame, search_region(part, &part, parameters.max_part_cells));
-        let (_, mut evidence) = self.evidence(parameters, integrals, part, full);
+        let (_, mut evidence) = self.evidence(parameters, frame, integrals, part, full);
         let Belief { confidence, .. } = self.judge.believe(&mut evidence);
         self.estimate = Estimate::new(full, part, confidence, status(confidence));
         self.estimate.evidence = Some(evidence);
