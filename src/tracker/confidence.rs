@@ -100,6 +100,13 @@ impl Judge {
     }
 }
 
+impl Evidence {
+    /// Whether the box shows what stood there when the target was elsewhere.
+    pub(super) fn shows_scenery(&self) -> bool {
+        self.scenery.is_some_and(|scenery| scenery > OTHER_THAN_SCENERY)
+    }
+}
+
 /// The probability that an estimate is right from the evidence of one frame alone.
 pub(super) fn of_frame(evidence: &Evidence) -> f64 {
     probability(log_odds(evidence))

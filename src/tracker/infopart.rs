@@ -100,6 +100,8 @@ pub(super) struct Target {
     /// What it stands before; only where cues look over a window.
     scene: Option<Scene>,
     judge: Judge,
+    /// The whole box when the target was last tracked, frame pixels.
+    last_seen: Rect,
     search: Search,
     gate: LearningGate,
     #[cfg_attr(feature = "save", serde(skip))]
@@ -229,13 +231,14 @@ impl Target {
             aspect: part.h / part.w,
             limits: Limits::around(&part, frame.width(), frame.height()),
             frame: 0,
-            sets: (0..parameters.particle_sets).map(|set| particle_set(parameters, &part, set)).collect(),
+            sets: particle_sets(parameters, &part),
             estimate,
             learnable: true,
             identity: Identity::new(Portrait::of(integrals, part)),
             scene: cues.look_over_window().then(|| Scene::new(frame, box_in_frame)),
             cues,
             judge: Judge::default(),
+            last_seen: box_in_frame,
             search: Search::new(&box_in_frame),
             gate: LearningGate::new(parameters),
             set_estimates: Vec::with_capacity(parameters.particle_sets),
@@ -250,6 +253,11 @@ impl Target {
             return Ok(());
         }
         Err(TrackError::SizeChanged { width, height, first_width, first_height })
+    }
+
+    /// Particles begin anew around a part.
+    fn restart_sets(&mut self, parameters: &CheckedParameters, part: &Rect) {
+        self.sets = particle_sets(parameters, part);
     }
 
     /// Step 3a, prediction.
@@ -405,6 +413,10 @@ impl Observation<3> for FrameObservation<'_> {
         let full = self.region.full_from_part(part);
         self.cues.log_likelihood(&self.cues.hypothesis(self.integrals, part, full))
     }
+}
+
+fn particle_sets(parameters: &CheckedParameters, part: &Rect) -> Vec<ParticleFilter<3>> {
+    (0..parameters.particle_sets).map(|set| particle_set(parameters, part, set)).collect()
 }
 
 /// A set of N_s / n particles, uniform within the initial spread of the part.

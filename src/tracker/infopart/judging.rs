@@ -6,7 +6,7 @@ use super::{
     super::{
         confidence::{Belief, status},
         cues::Fit,
-        estimate::{Estimate, Evidence},
+        estimate::{Estimate, Evidence, Status},
         identity::Portrait,
         motion::box_of,
         parameters::CheckedParameters,
@@ -45,7 +45,21 @@ impl Target {
         self.estimate.covariance = covariance;
         self.estimate.evidence = Some(evidence);
         self.cues.credit(&full);
+        self.stay_where_seen(parameters);
         fit
+    }
+
+    /// Somebody hidden by the scenery is waited for where the target was seen last: the particles would hold on to the scenery.
+    fn stay_where_seen(&mut self, parameters: &CheckedParameters) {
+        if self.estimate.status == Status::Tracking {
+            self.last_seen = self.estimate.box_in_frame;
+        }
+        let shows_scenery = self.estimate.evidence.is_some_and(|evidence| evidence.shows_scenery());
+        if self.estimate.status == Status::Lost && shows_scenery {
+            let part = parameters.region.part_from_full(self.last_seen);
+            (self.estimate.box_in_frame, self.estimate.part_in_frame) = (self.last_seen, part);
+            self.restart_sets(parameters, &part);
+        }
     }
 
     /// How well a part and its whole box fit, and what that tells.

@@ -9,7 +9,7 @@ use super::{
         parameters::CheckedParameters,
         search::{SearchExtent, Suspect},
     },
-    Target, particle_set, search_region,
+    Target, search_region,
 };
 
 /// Places in a window that are looked at closer.
@@ -102,6 +102,6 @@ impl Target {
         let Belief { confidence, .. } = self.judge.believe(&mut evidence);
         self.estimate = Estimate::new(full, part, confidence, status(confidence));
         self.estimate.evidence = Some(evidence);
-        self.sets = (0..parameters.particle_sets).map(|set| particle_set(parameters, &part, set)).collect();
+        self.restart_sets(parameters, &part);
     }
 }
