@@ -4,7 +4,7 @@
 //! Steps, each frame:
 //! 1. the frame's outline, and whether the scene was cut: the frame shows less of what the one before did than frames do lately,
 //! 2. (for each box asked about) it is carried into each view of the scene by the shift of the whole picture (`correlation/shift.rs`)
-//!    and put right by a cell's width or two; a view in which it meets the target, or which does not show it, tells nothing,
+//!    and put right by a cell's width or two, if the camera is steady enough; a view in which it meets the target, or which does not show it, tells nothing,
 //! 3. the correlation of the luminance in the box's middle, now and then; the highest over the views counts,
 //! 4. a view is kept, with where the target was, if the tracker is sure and the target has left its place in the latest view.
 
@@ -18,6 +18,8 @@ use crate::{
 const CUT: f64 = 0.7;
 /// How fast that mean follows.
 const SIMILARITY_RATE: f64 = 0.1;
+/// Below this mean similarity the camera moves too quickly, or the light, for boxes to be carried along.
+const STEADY: f64 = 0.9;
 /// Views that are kept.
 const VIEWS: usize = 5;
 /// Pixels of a view at most; of larger frames some are left out.
@@ -100,6 +102,9 @@ impl Scene {
     /// How much a part of the frame last seen looks like its place in the scene did when the target was elsewhere, in [0, 1]
     /// (steps 2 and 3).
     pub fn sameness(&mut self, frame: &FrameView<'_>, part: Rect, full: Rect) -> f64 {
+        if self.mean_similarity < STEADY {
+            return 0.0;
+        }
         let middle = part.scaled_about_centre(MIDDLE);
         let Some(here) = patch(middle, |x, y| luminance_in(frame, x, y)) else { return 0.0 };
         let mut highest = 0.0f32;
