@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
 """Measures the Python package: its size, its import, what a call costs besides tracking, and two trackers in two threads.
 
-Needs the package: pip install ./python. On a machine that does other work too, the lowest figures say most.
+Two processes beside the threads show what the machine has to give: threads that come near them wait for no lock. Needs the
+package: pip install ./python. On a machine that does other work too, the lowest figures say most.
 """
 
+import multiprocessing
 import statistics
 import subprocess
 import sys
@@ -48,30 +50,39 @@ def call_overhead(frames, box):
     return sorted(over), statistics.median(updates)
 
 
-def speed_up(frames, box, repeats=6):
+def track_over_and_over(frames, box, repeats):
     import infopart
 
-    def work(tracker):
-        for _ in range(repeats):
-            tracker.init(frames[0], box)
-            for frame in frames[1:]:
-                tracker.update(frame)
+    tracker = infopart.Tracker()
+    for _ in range(repeats):
+        tracker.init(frames[0], box)
+        for frame in frames[1:]:
+            tracker.update(frame)
 
-    ratios = []
-    for _ in range(5):
-        trackers = [infopart.Tracker() for _ in range(2)]
+
+def seconds_of(workers):
+    """From the start of all to the end of the last."""
+    begin = time.perf_counter()
+    for worker in workers:
+        worker.start()
+    for worker in workers:
+        worker.join()
+    return time.perf_counter() - begin
+
+
+def speed_up(frames, box, repeats=6, rounds=5):
+    """How many times as fast two trackers are in two threads, and in two processes, as one after the other."""
+    work = (frames, box, repeats)
+    fork = multiprocessing.get_context("fork")  # With the frames, and the package imported.
+    threads, processes = [], []
+    for _ in range(rounds):
         begin = time.perf_counter()
-        for tracker in trackers:
-            work(tracker)
-        one_after_the_other = time.perf_counter() - begin
-        threads = [threading.Thread(target=work, args=(tracker,)) for tracker in trackers]
-        begin = time.perf_counter()
-        for thread in threads:
-            thread.start()
-        for thread in threads:
-            thread.join()
-        ratios.append(one_after_the_other / (time.perf_counter() - begin))
-    return statistics.median(ratios), max(ratios)
+        for _ in range(2):
+            track_over_and_over(*work)
+        alone = time.perf_counter() - begin
+        threads.append(alone / seconds_of([threading.Thread(target=track_over_and_over, args=work) for _ in range(2)]))
+        processes.append(alone / seconds_of([fork.Process(target=track_over_and_over, args=work) for _ in range(2)]))
+    return threads, processes
 
 
 def main():
@@ -84,8 +95,9 @@ def main():
     over, update = call_overhead(frames, box)
     median, low = statistics.median(over), over[len(over) // 10]
     print(f"a call besides tracking: {1e6 * median:.1f} us (lowest decile {1e6 * low:.1f}); an update: {1e3 * update:.2f} ms")
-    median, best = speed_up(frames, box)
-    print(f"two trackers in two threads: {median:.2f} times as fast as one after the other (median of 5; best {best:.2f})")
+    for name, ratios in zip(("threads", "processes"), speed_up(frames, box)):
+        median, best = statistics.median(ratios), max(ratios)
+        print(f"two trackers in two {name}: {median:.2f} times as fast as one after the other (median of {len(ratios)}; best {best:.2f})")
 
 
 if __name__ == "__main__":

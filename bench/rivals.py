@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
 """Times InfoPart and other trackers on the same frames, and scores them.
 
-For each sequence and each round every tracker runs once, the order turning by one from round to round. Only updates
-are timed: reading and decoding frames and the first frame are not. The ratio of a sequence is the median over
+For each sequence and each round every tracker runs once, the order turning by one from round to round: a process that
+`otb_eval run --tracker` speaks TraX with, InfoPart by `infopart trax`, the others by `python -m infopart.trax` with the
+classes of infopart.rivals. Only updates are timed, by the tracker's own process: reading and decoding frames and the
+first frame are not. The ratio of a sequence is the median over
 rounds of (rival's time / InfoPart's time); the ratio of all is the geometric mean over sequences. A tracker that
 says it has lost the target may return at once: its time then says little, and --json has how often it said so.
 
@@ -12,7 +14,8 @@ of it that is inside. With --tre every tracker is also started on frames spread 
 true box of each, and runs to the end: the benchmark's temporal robustness evaluation without its lists of hidden
 frames. A sequence's number is the plain mean of the AUC of its runs, not timed.
 
-Needs: pip install -r bench/requirements.txt (and dlib-bin for --rivals dlib), and `cargo build --release`; for
+Needs: pip install ./python -r bench/requirements.txt (and dlib-bin for --rivals dlib), and
+`cargo build --release --workspace`; for
 --rivals NanoTrack its two networks, backbone.onnx and head.onnx, in the folder given with --models.
 Data: the folder given with --data or INFOPART_DATA, which holds otb/, people/ and so on; else ../shared/data beside
 the project.
@@ -23,11 +26,11 @@ import json
 import os
 import platform
 import re
+import shlex
 import statistics
 import subprocess
 import sys
 import tempfile
-import time
 from collections import namedtuple
 from pathlib import Path
 
@@ -36,7 +39,8 @@ from sequences import (
 )
 
 RIVALS = ("Boosting", "CSRT", "KCF", "MIL", "MOSSE", "MedianFlow", "NanoTrack", "TLD", "dlib")
-NETWORKS = ("backbone.onnx", "head.onnx")
+# Where a class of infopart.rivals has another name.
+CLASSES = {"dlib": "Dlib"}
 OURS = "infopart"
 # Frames that the benchmark's ground truth covers, where a folder holds more images than rows.
 COVERED = {"David": (300, 770), "Football1": (1, 74), "Diving": (1, 215), "Freeman3": (1, 460), "Freeman4": (1, 283)}
@@ -46,11 +50,11 @@ Sequence = namedtuple("Sequence", "name folder target truth files")
 Run = namedtuple("Run", "seconds boxes lost")
 
 
-def executable(given):
+def executable(given, flag="infopart"):
     """The program, if it can be run."""
     program = Path(given).resolve()
     if not os.access(program, os.X_OK):
-        fail(f"no program at {program}: run `cargo build --release`, or give its path with --infopart")
+        fail(f"no program at {program}: run `cargo build --release --workspace`, or give its path with --{flag}")
     return program
 
 
@@ -73,97 +77,73 @@ def read_sequence(name, folder, target, truth_file):
         first, last = COVERED[folder.name]
         covered = [path for path in files if first <= int(path.stem) <= last]
         files = covered if len(covered) == len(truth) else files
+    if len(files) < 2 or len(files) != len(truth):
+        fail(f"{folder}: {len(files)} images but {len(truth)} rows of ground truth")
     return Sequence(name, folder, target, truth, files)
 
 
-def decode(path):
-    image = cv2.imread(str(path))
-    if image is None:
-        fail(f"{path} cannot be decoded")
-    return image
+# Runs: each tracker is a process that `otb_eval run` speaks TraX with
 
 
-# Trackers
+def command(name, threads, sequence, options):
+    """The line that starts a tracker: rivals are classes of infopart.rivals."""
+    if name == OURS:
+        region = ["--region", options.region] if options.region else region_flags(sequence.name)
+        words = [options.infopart, "trax", "--seed", 1, "--threads", threads, *region]
+    else:
+        words = [sys.executable, "-m", "infopart.trax", f"infopart.rivals:{CLASSES.get(name, name)}"]
+        words += ["--rgb"] if name == "dlib" else ["--option", f"threads={threads}"]
+        words += [f"--option={key}={value}" for key, value in networks(name, options).items()]
+    return shlex.join(map(str, words))
 
 
-class Dlib:
-    """dlib's correlation tracker behind the calls of OpenCV's trackers; it takes RGB."""
-
-    def __init__(self):
-        try:
-            import dlib
-        except ImportError:
-            fail("dlib is not installed: pip install dlib-bin, or leave dlib out of --rivals")
-        self.rectangle, self.tracker = dlib.rectangle, dlib.correlation_tracker()
-
-    def init(self, image, box):
-        x, y, w, h = box
-        self.tracker.start_track(image, self.rectangle(x, y, x + w - 1, y + h - 1))
-
-    def update(self, image):
-        self.tracker.update(image)
-        position = self.tracker.get_position()
-        return True, (position.left(), position.top(), position.width(), position.height())
+def networks(name, options):
+    if name != "NanoTrack":
+        return {}
+    return {key: options.models / f"{key}.onnx" for key in ("backbone", "head")}
 
 
-def nano_track(models):
-    """NanoTrack with the networks of that folder; OpenCV comes without any."""
-    parameters = cv2.TrackerNano_Params()
-    for network in NETWORKS:
-        if not (models / network).is_file():
-            fail(f"no {network} in {models}: give the folder of NanoTrack's networks with --models")
-    parameters.backbone, parameters.neckhead = (str(models / network) for network in NETWORKS)
-    return cv2.TrackerNano_create(parameters)
-
-
-def make_rival(name, models):
-    if name == "dlib":
-        return Dlib()
-    if name == "NanoTrack" and hasattr(cv2, "TrackerNano_create"):
-        return nano_track(models)
-    for module in (cv2, getattr(cv2, "legacy", None)):
-        create = getattr(module, f"Tracker{name}_create", None)
-        if create:
-            return create()
-    fail(f"OpenCV {cv2.__version__} has no {name} tracker: pip install opencv-contrib-python-headless")
-
-
-def started(name, models, image, box):
-    """A tracker on its first frame; one that does not take a box beyond the picture gets what of it is inside."""
-    x, y, w, h = round(box[0] - 1), round(box[1] - 1), round(box[2]), round(box[3])
-    tracker = make_rival(name, models)
+def refuse_missing(options):
+    """Ends where a tracker cannot be made, now rather than in the middle."""
     try:
-        tracker.init(image, (x, y, w, h))
-    except cv2.error:
-        left, top, right, bottom = max(x, 0), max(y, 0), min(x + w, image.shape[1]), min(y + h, image.shape[0])
-        tracker = make_rival(name, models)
-        tracker.init(image, (left, top, right - left, bottom - top))
-    return tracker
+        from infopart import rivals
+    except ImportError as error:
+        fail(f"{error}: pip install {PROJECT / 'python'} -r {PROJECT / 'bench/requirements.txt'}")
+    for name in options.rivals:
+        try:
+            getattr(rivals, CLASSES.get(name, name))(**networks(name, options)).create()
+        except FileNotFoundError as error:
+            fail(f"{error}; or give the folder of NanoTrack's networks with --models")
+        except (ImportError, RuntimeError, AttributeError) as error:
+            fail(f"--rivals {name}: {error}")
 
 
-def run_rival(tracker, truth, images):
-    seconds, lost, boxes = 0.0, 0, [truth[0]]
-    for image in images[1:]:
-        start = time.perf_counter()
-        found, box = tracker.update(image)
-        seconds += time.perf_counter() - start
-        lost += not found
-        # Where a tracker says that it has lost the target, its last box stands.
-        boxes.append((box[0] + 1, box[1] + 1, box[2], box[3]) if found else boxes[-1])
-    return Run(seconds, np.array(boxes, float), lost)
+def lay_out(sequence, start, folder):
+    """The sequence from a row of its ground truth on as a folder of OTB, its images linked."""
+    (folder / "img").mkdir(parents=True)
+    for file in sequence.files[start:]:
+        (folder / "img" / file.name).symlink_to(file.resolve())
+    rows = (",".join(map(str, row)) for row in sequence.truth[start:].tolist())
+    (folder / "groundtruth_rect.txt").write_text("\n".join(rows).replace("nan", "NaN") + "\n")
 
 
-def run_ours(program, flags, sequence, start):
+def run(name, sequence, threads, start, options):
+    """One run from a row of the ground truth, counted from 0, to the end."""
+    # No name that otb_eval knows, for it would look for what is known of that sequence.
+    label = f"from_{start}_of_{sequence.name}"
     with tempfile.TemporaryDirectory() as folder:
-        rows = Path(folder) / "boxes.txt"
-        command = [program, "track", sequence.folder, *flags, "--start", start + 1, "--json", "--quiet", "--out", rows]
-        command += ["--target", sequence.target] if sequence.target else []
-        done = subprocess.run([str(word) for word in command], capture_output=True, text=True)
+        data, out = Path(folder) / label, Path(folder) / "results"
+        lay_out(sequence, start, data)
+        words = [options.otb_eval, "run", "--data", data, "--out", out, "--jobs", 1]
+        words += ["--tracker", f"{name}={command(name, threads, sequence, options)}"]
+        done = subprocess.run([str(word) for word in words], capture_output=True, text=True)
         if done.returncode != 0:
-            fail(f"{program} failed on {sequence.name} with exit code {done.returncode}: {done.stderr.strip()}")
-        summary = json.loads(done.stderr)
-        boxes = np.loadtxt(rows, delimiter=",", ndmin=2)
-    return Run(summary["update_seconds"], boxes, summary["lost_frames"])
+            fail(f"{name} fails on {sequence.name} from frame {start + 1}: {done.stderr.strip()}")
+        found = out / "ope" / name / "seed_1"
+        boxes = np.loadtxt(found / f"{label}.txt", delimiter=",", ndmin=2)
+        seconds = np.loadtxt(found / f"{label}_time.txt", ndmin=1)[1:].sum()
+        lost = json.loads((found / f"{label}.external.json").read_text())["lost_frames"]
+    return Run(float(seconds), boxes, lost)
 
 
 # Measures: the benchmark's own (Wu, Lim, Yang 2015), over the frames whose ground truth has the target
@@ -187,58 +167,29 @@ def score(boxes, truth):
 # The comparison
 
 
-class Frames:
-    """The decoded images of a sequence, as each tracker takes them."""
-
-    def __init__(self, sequence, names):
-        self.images = [decode(path) for path in sequence.files]
-        if len(self.images) < 2 or len(self.images) != len(sequence.truth):
-            fail(f"{sequence.folder}: {len(self.images)} images but {len(sequence.truth)} rows of ground truth")
-        self.as_rgb = [cv2.cvtColor(image, cv2.COLOR_BGR2RGB) for image in self.images] if "dlib" in names else None
-
-
-def run(name, sequence, frames, threads, start, options):
-    """One run from a row of the ground truth, counted from 0, to the end."""
-    truth = sequence.truth[start:]
-    if name == OURS:
-        region = ["--region", options.region] if options.region else region_flags(sequence.name)
-        done = run_ours(options.infopart, ["--threads", threads, *region], sequence, start)
-    else:
-        cv2.setNumThreads(threads)
-        images = frames.as_rgb if name == "dlib" else frames.images
-        try:
-            done = run_rival(started(name, options.models, images[start], truth[0]), truth, images[start:])
-        except cv2.error as error:
-            fail(f"{name} fails on {sequence.name} from frame {start + 1}: {error}: leave one of them out")
-    if len(done.boxes) != len(truth):
-        fail(f"{name} gave {len(done.boxes)} boxes for the {len(truth)} frames of {sequence.name}")
-    return done
-
-
 def measure(sequence, names, options):
     """What each tracker took and found: {name: {ms_per_update: {threads: [a round each]}, lost, auc, r1, r2}}, and with
     --tre also {tre: {number of the first frame: AUC}}."""
-    frames = Frames(sequence, names)
     found = {name: {"ms_per_update": {threads: [] for threads in options.threads}} for name in names}
     for number in range(options.rounds):
         turn = number % len(names)
         for threads in options.threads:
             for name in names[turn:] + names[:turn]:
-                done = run(name, sequence, frames, threads, 0, options)
+                done = run(name, sequence, threads, 0, options)
                 found[name]["ms_per_update"][threads].append(1e3 * done.seconds / (len(sequence.truth) - 1))
                 found[name].update(score(done.boxes, sequence.truth), lost=done.lost)
     if options.tre:
         for name in names:
-            found[name]["tre"] = tre(name, sequence, frames, found[name]["auc"], options)
+            found[name]["tre"] = tre(name, sequence, found[name]["auc"], options)
     return found
 
 
-def tre(name, sequence, frames, ope, options):
+def tre(name, sequence, ope, options):
     """AUC of the runs of temporal robustness evaluation; the first is the one pass, done already."""
     aucs = {}
     for start in tre_starts(sequence.truth.tolist(), options.tre):
         if start > 0:
-            boxes = run(name, sequence, frames, options.threads[-1], start, options).boxes
+            boxes = run(name, sequence, options.threads[-1], start, options).boxes
             aucs[start + 1] = score(boxes, sequence.truth[start:])["auc"]
         else:
             aucs[1] = ope
@@ -315,6 +266,7 @@ def arguments():
     add("--threads", default="2", help="threads that each tracker may use: a number, or `both` for 1 and 2 [default: 2]")
     add("--models", type=Path, metavar="DIR", help="NanoTrack's networks [default: models/nanotrack_v2 of the data folder]")
     add("--infopart", default=PROJECT / "target/release/infopart", help="the program [default: target/release/infopart]")
+    add("--otb-eval", default=PROJECT / "target/release/otb_eval", help="the program [default: target/release/otb_eval]")
     add("--data", help="the folder that holds otb/ and people/ [default: INFOPART_DATA]")
     add("--json", metavar="FILE", help="write every number to FILE")
     options = parser.parse_args()
@@ -353,12 +305,12 @@ def main():
         fail(f"{error}: pip install -r {PROJECT / 'bench/requirements.txt'}")
     load_numpy()
     options.infopart = executable(options.infopart)
+    options.otb_eval = executable(options.otb_eval, "otb-eval")
     data = data_folder(options.data)
     sequences = [read_sequence(name, *locate(data, name)) for name in expand(options.sequences)]
     names = [OURS, *options.rivals]
     options.models = options.models or usual_models(data)
-    for name in options.rivals:
-        make_rival(name, options.models)  # Fails now rather than in the middle.
+    refuse_missing(options)
 
     all_found = {}
     for sequence in sequences:

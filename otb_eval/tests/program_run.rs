@@ -255,3 +255,15 @@ fn words_that_mean_nothing_are_refused_with_what_there_is() {
         scene.refuses(line, needles);
     }
 }
+
+#[test]
+fn shells_and_man_know_every_command() {
+    let scene = Scene::empty();
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        let text = scene.accepts(&format!("completions {shell}")).stdout;
+        assert!(text.contains("toolkit") && text.contains("report"), "{shell}");
+    }
+    scene.accepts("completions --out c --man man");
+    assert_eq!(std::fs::read_dir(scene.path("c")).unwrap().count(), 5);
+    assert!(scene.read("man/otb_eval-score.1").contains("toolkit"));
+}

@@ -1,7 +1,9 @@
-"""OpenCV's trackers, ready for ``otb_eval run --tracker NAME='python -m infopart.trax infopart.rivals:CSRT'``.
+"""OpenCV's trackers and dlib's, ready for ``otb_eval run --tracker NAME='python -m infopart.trax infopart.rivals:CSRT'``.
 
 CSRT, KCF, MIL, Boosting, MedianFlow, MOSSE and TLD need opencv-contrib-python-headless, and NanoTrack its two networks too:
 ``--option backbone=backbone.onnx --option head=head.onnx``, or the folder that holds them in NANOTRACK_MODELS.
+
+``infopart.rivals:Dlib --rgb`` needs dlib-bin.
 
 A tracker that does not take a first box beyond the picture is given the part of it that is inside.
 """
@@ -121,3 +123,31 @@ class NanoTrack(OpenCv):
         parameters = cv2.TrackerNano_Params()
         parameters.backbone, parameters.neckhead = map(str, self._files)
         return cv2.TrackerNano_create(parameters)
+
+
+class Dlib:
+    """dlib's correlation tracker. It wants RGB."""
+
+    def __init__(self) -> None:
+        try:
+            import dlib
+        except ImportError as error:
+            raise ImportError(f"{error}: pip install dlib-bin") from None
+        self._rectangle, self._make = dlib.rectangle, dlib.correlation_tracker
+        self._tracker: Any = None
+
+    def create(self) -> Any:
+        """A new tracker."""
+        return self._make()
+
+    def init(self, image: Any, box: tuple[float, float, float, float]) -> None:
+        """Starts on an image with the target in ``box``."""
+        x, y, w, h = (int(round(side)) for side in box)
+        self._tracker = self.create()
+        self._tracker.start_track(image, self._rectangle(x, y, x + w - 1, y + h - 1))
+
+    def update(self, image: Any) -> tuple[bool, tuple[float, float, float, float]]:
+        """The target's box; dlib never says that it is lost."""
+        self._tracker.update(image)
+        found = self._tracker.get_position()
+        return True, (found.left(), found.top(), found.width(), found.height())

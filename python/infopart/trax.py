@@ -120,10 +120,13 @@ class Adapter:
         self._tracker: Any = None
         self._last: tuple[float, ...] = ()
 
+    def prepared(self, image: np.ndarray) -> np.ndarray:
+        """An image as the tracker wants it; ``start`` and ``step`` take it so, and their time is the tracker's alone."""
+        return np.ascontiguousarray(image[:, :, ::-1]) if self._rgb else image
+
     def start(self, image: np.ndarray, box: tuple[float, float, float, float]) -> None:
         """A new tracker on its first image."""
         self._tracker, self._last = self._make(), box
-        image = self._as_wanted(image)
         if hasattr(self._tracker, "initialize"):
             self._tracker.initialize(image, {"init_bbox": list(box)})
         elif hasattr(self._tracker, "init"):
@@ -133,7 +136,6 @@ class Adapter:
 
     def step(self, image: np.ndarray) -> tuple[tuple[float, ...], dict[str, object]]:
         """The box in the next image and what else the tracker says. Where it has none, the last one stands."""
-        image = self._as_wanted(image)
         tracker = self._tracker
         said: dict[str, object] = {}
         answer = tracker.track(image) if hasattr(tracker, "initialize") else tracker.update(image)
@@ -156,9 +158,6 @@ class Adapter:
             raise ValueError(f"the tracker gave a box with numbers that are not finite: {answer!r}")
         self._last = box
         return box, said
-
-    def _as_wanted(self, image: np.ndarray) -> np.ndarray:
-        return np.ascontiguousarray(image[:, :, ::-1]) if self._rgb else image
 
     def _first_box(self, box: tuple[float, ...]) -> tuple[float, ...]:
         # OpenCV's own trackers take whole numbers only.
@@ -195,7 +194,7 @@ def serve(adapter: Any, name: str, identifier: str, source: IO[str], sink: IO[st
                 continue
         elif kind != "frame" or not arguments or not (waiting or started):
             raise ProtocolError(f"the message {line.strip()[:200]!r} was not expected here")
-        image = read_image(arguments[0])
+        image = adapter.prepared(read_image(arguments[0]))
         begin = time.perf_counter()
         if waiting:
             box: tuple[float, ...] = waiting[0]

@@ -2,12 +2,11 @@
 
 use std::{path::Path, process::ExitCode};
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 use infopart::program;
 
 mod auto_init;
 mod background;
-mod completions;
 mod config;
 mod demo;
 mod demo_folder;
@@ -61,8 +60,8 @@ enum Command {
     #[command(after_help = trax::EXAMPLES)]
     Trax(Box<trax::TraxArgs>),
     /// Print what a shell needs to complete the program's words, or write man pages
-    #[command(after_help = completions::EXAMPLES)]
-    Completions(completions::CompletionsArgs),
+    #[command(after_help = program::completions_examples("infopart"))]
+    Completions(program::CompletionsArgs),
     /// Compare state estimators on a simulated oscillator; needs no data
     #[command(after_help = estimate::EXAMPLES)]
     Estimate(estimate::EstimateArgs),
@@ -94,7 +93,7 @@ pub fn main() -> ExitCode {
         Command::Demo(args) => demo::demo(&args),
         Command::Background(args) => background::background(&args),
         Command::Trax(args) => trax::trax(&args),
-        Command::Completions(args) => completions::completions(&args),
+        Command::Completions(args) => program::completions(Cli::command(), &args).map_err(Into::into),
         Command::Config(args) => config::config(&args),
         Command::Estimate(args) => estimate::estimate(&args),
     };

@@ -1,13 +1,13 @@
 //! `infopart track`: from an input and a box to rows, pictures and a summary.
 
-use std::sync::Arc;
+use std::{path::Path, sync::Arc};
 
 use anyhow::{Context, Result};
 use infopart::{
     geometry::{Rect, Region},
     program::{self, BadInput},
     run::{Pace, RunReport, Summary, run_at, tracker_title},
-    sequence::{self, OpenOptions, Sequence, SequenceError},
+    sequence::{self, OpenOptions, Sequence, SequenceError, Wait},
     tracker::{
         CheckedParameters, InfoPart, Tracker,
         colour::{CheckedColourParameters, ColourTracker},
@@ -185,6 +185,10 @@ impl TrackArgs {
             origin: self.origin,
             live: self.live,
             input_format: self.input_format.clone(),
+            wait: Wait {
+                stop: Some(program::interrupted()),
+                tell: if self.quiet { None } else { Some(tell_of_waiting) },
+            },
         }
     }
 
@@ -195,6 +199,10 @@ impl TrackArgs {
             (None, None) => Pace::EveryFrame,
         }
     }
+}
+
+fn tell_of_waiting(stream: &Path) {
+    eprintln!("note: {}: no frame for 5 seconds; waiting for the next (Ctrl-C ends it)", stream.display());
 }
 
 pub fn thread_pool(threads: usize) -> Result<Arc<ThreadPool>> {

@@ -9,6 +9,11 @@ use super::INTERRUPTED as INTERRUPTED_CODE;
 
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
+/// Whether Ctrl-C came, once it is watched for.
+pub fn interrupted() -> &'static AtomicBool {
+    &INTERRUPTED
+}
+
 /// Watches for Ctrl-C from now on; the flag is true once it came.
 ///
 /// # Errors

@@ -15,7 +15,11 @@
 //! # Ok::<(), infopart::sequence::SequenceError>(())
 //! ```
 
-use std::{path::PathBuf, time::Duration};
+use std::{
+    path::{Path, PathBuf},
+    sync::atomic::AtomicBool,
+    time::Duration,
+};
 
 use crate::{
     frame::Frame,
@@ -88,7 +92,7 @@ pub struct Sequence {
 }
 
 /// How an input is opened.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Default)]
 pub struct OpenOptions {
     /// Which target of an OTB folder that has several (`groundtruth_rect.K.txt`).
     pub target: Option<usize>,
@@ -103,4 +107,15 @@ pub struct OpenOptions {
     /// ffmpeg's name (`-f`) of what the input is: a capture device's, such as `v4l2`, `avfoundation` or `dshow`, to which the input
     /// is passed as it stands.
     pub input_format: Option<String>,
+    /// What happens while a stream sends nothing.
+    pub wait: Wait,
+}
+
+/// What happens while a stream sends nothing. A stream is waited for without end, a file for a minute.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Wait {
+    /// Ends the wait once it is true: the stream then is as one that ended.
+    pub stop: Option<&'static AtomicBool>,
+    /// Is called with the stream's name the first time that nothing came for five seconds.
+    pub tell: Option<fn(&Path)>,
 }

@@ -113,9 +113,9 @@ fn open_stream(stream: &VideoInput, input: &str, options: &OpenOptions) -> Resul
     let range = FrameRange::of(options)?;
     let is_live = options.live || matches!(stream, VideoInput::Device { .. });
     let source: Box<dyn super::FrameSource> = if is_live {
-        Box::new(VideoFile::open(stream.clone(), range)?.live())
+        Box::new(VideoFile::open(stream.clone(), range, options.wait)?.live())
     } else {
-        Box::new(VideoFile::open(stream.clone(), range)?)
+        Box::new(VideoFile::open(stream.clone(), range, options.wait)?)
     };
     Ok(without_ground_truth(source, input.to_owned(), options))
 }
@@ -149,7 +149,7 @@ fn open_file(path: &Path, input: &str, options: &OpenOptions) -> Result<Sequence
     if has_image_extension(path) {
         return of_images(vec![path.to_owned()], name, input, options);
     }
-    let source = VideoFile::open(VideoInput::File(path.to_owned()), FrameRange::of(options)?)?;
+    let source = VideoFile::open(VideoInput::File(path.to_owned()), FrameRange::of(options)?, options.wait)?;
     Ok(without_ground_truth(Box::new(source), name, options))
 }
 

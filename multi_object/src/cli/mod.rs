@@ -3,7 +3,7 @@
 use std::{path::Path, process::ExitCode};
 
 use anyhow::{Error, Result};
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 use infopart::{
     output::{Destination, PartialFile, StandardOutput},
     program::{self, BAD_INPUT, INTERRUPTED},
@@ -50,6 +50,9 @@ enum Command {
     /// Track given detections (SORT)
     #[command(after_help = sort::EXAMPLES)]
     Sort(sort::SortArgs),
+    /// Print what a shell needs to complete the program's words, or write man pages
+    #[command(after_help = program::completions_examples("mot"))]
+    Completions(program::CompletionsArgs),
 }
 
 /// Runs the program on its command line.
@@ -59,6 +62,7 @@ pub fn main() -> ExitCode {
         Command::Track(args) => track::track(&args),
         Command::Compare(args) => compare::compare(&args),
         Command::Sort(args) => sort::sort(&args),
+        Command::Completions(args) => program::completions(Cli::command(), &args).map_err(Into::into),
     };
     program::report_with(outcome, code_of)
 }

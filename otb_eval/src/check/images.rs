@@ -5,16 +5,14 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use infopart::sequence::{
-    FramePlace, SequenceError, benchmark_sequences, decode_image, otb_images, probe_image,
-};
+use infopart::sequence::{SequenceError, decode_image, probe_image};
 use rayon::prelude::*;
 use serde::Serialize;
 
 use super::{Finding, file_name};
 use crate::{
     catalogue,
-    dataset::{FrameFolder, Target},
+    dataset::{FrameFiles, FrameFolder, Target},
     words::of_sequence,
 };
 
@@ -55,19 +53,18 @@ impl Images {
     ) -> ImageSummary {
         let omitted = frames.first_frame - 1;
         let rows = target.truth.len() + omitted;
-        if let Some(video) = video_of(frames) {
-            let text =
-                format!("its frames are in a video, {}, which is not looked through", file_name(&video));
-            findings.push(Finding::oddity(text));
-            return ImageSummary { count: 0, first: None, last: None, size: None };
-        }
-        let is_benchmark = target.annotations.benchmark.is_some();
-        let found = if is_benchmark { of_benchmark(frames, rows) } else { of_otb(frames, rows) };
-        let (all, covered) = match found {
-            Ok(found) => found,
+        let nothing = ImageSummary { count: 0, first: None, last: None, size: None };
+        let (all, covered) = match frames.files(rows) {
+            Ok(FrameFiles::Images { all, covered }) => (all, covered),
+            Ok(FrameFiles::Video(video)) => {
+                let text =
+                    format!("its frames are in a video, {}, which is not looked through", file_name(&video));
+                findings.push(Finding::oddity(text));
+                return nothing;
+            }
             Err(error) => {
                 findings.push(Finding::damage(of_sequence(&error)));
-                return ImageSummary { count: 0, first: None, last: None, size: None };
+                return nothing;
             }
         };
         let folder = all.first().and_then(|image| image.parent()).map_or(frames.path.clone(), Path::to_owned);
@@ -96,31 +93,6 @@ impl Images {
         };
         self.probed.entry(folder.to_owned()).or_insert_with(|| images.par_iter().map(probe).collect())
     }
-}
-
-/// All images, and those that rows belong to.
-type Listing = Result<(Vec<PathBuf>, Vec<PathBuf>), SequenceError>;
-
-/// The video that a sequence's frames are in, if they are in one.
-fn video_of(frames: &FrameFolder) -> Option<PathBuf> {
-    let found = benchmark_sequences(&frames.path).ok()?;
-    found.into_iter().find_map(|one| match one.frames {
-        FramePlace::Video(video) => Some(video),
-        FramePlace::Folder(_) => None,
-    })
-}
-
-fn of_otb(frames: &FrameFolder, rows: usize) -> Listing {
-    otb_images(&frames.path, rows).map(|images| (images.all, images.covered))
-}
-
-fn of_benchmark(frames: &FrameFolder, rows: usize) -> Listing {
-    let found = benchmark_sequences(&frames.path)?;
-    let own = found.iter().find(|one| found.len() == 1 || one.number == frames.target);
-    let Some(own) = own else { return Ok((Vec::new(), Vec::new())) };
-    let all = own.images()?;
-    let covered = own.covered(&all, rows).map(|covered| all[covered].to_vec()).unwrap_or_default();
-    Ok((all, covered))
 }
 
 fn damaged(images: &[PathBuf], probes: &[Probe], size: Option<(usize, usize)>, findings: &mut Vec<Finding>) {

@@ -8,7 +8,9 @@ use infopart::{output::TextTable, program::BadInput};
 use otb_eval::{
     compare::Comparison,
     protocol::Protocol,
-    scoring::{Measure, Table, TrackerScores, common_seeds, compare_scores},
+    scoring::{
+        LongTermScores, Measure, Table, TrackerScores, common_seeds, compare_long_term, compare_scores,
+    },
     toolkits::Toolkit,
 };
 use serde::Serialize;
@@ -23,6 +25,10 @@ Examples:
   otb_eval compare infopart whole-body --data otb people --results results
   otb_eval compare infopart whole-body --data otb people --results results --json part.json
   otb_eval compare ATOM KCF --data OTB100.json --results published --toolkit pysot
+  otb_eval compare infopart mil --data otb people --results results --measure success,normalised,overlap
+
+Where targets leave, by the best F of each sequence, too, each at the threshold that suits it best:
+  otb_eval compare infopart mil --data longterm --results results --long-term
 
 A difference is A minus B, paired by sequence and seed; positive is better for A. Its 95 % interval is a bootstrap that \
 draws sequences, and seeds within them: where it spans 0, other sequences could well reverse it. p is the two-sided \
@@ -45,6 +51,10 @@ pub struct CompareArgs {
     /// Which results: ope, tre or sre
     #[arg(long, value_name = "ope|tre|sre", default_value = "ope")]
     protocol: Protocol,
+    /// In which measures: auc, precision, success, success-75, normalised, normalised-area, overlap [default: auc and
+    /// precision; for GOT-10k its AO (overlap), SR.5 and SR.75; for LaSOT normalised-area, too]
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
+    measure: Vec<Measure>,
     /// Write the comparison as JSON
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -58,10 +68,19 @@ struct Outcome {
     protocol: Protocol,
     toolkit: Toolkit,
     seeds: Vec<u64>,
-    auc: Comparison,
-    precision: Comparison,
+    measures: Vec<Compared>,
     /// Time of A over time of B, per update: the geometric mean over sequences.
     time_ratio: Option<f64>,
+}
+
+/// The trackers in one measure.
+#[derive(Debug, Serialize)]
+struct Compared {
+    measure: &'static str,
+    #[serde(skip)]
+    title: &'static str,
+    #[serde(flatten)]
+    comparison: Comparison,
 }
 
 pub fn run(args: &CompareArgs) -> Result<()> {
@@ -72,7 +91,11 @@ pub fn run(args: &CompareArgs) -> Result<()> {
     let toolkit = args.toolkit.unwrap_or_else(|| Toolkit::of(dataset.benchmark()));
     let (table, unscored) = args.scored.score(&dataset, &results, toolkit, args.protocol)?;
     tell(&unscored, &mut problems);
-    let outcome = outcome(args, &table)?;
+    if args.scored.long_term && args.protocol != Protocol::Ope {
+        return Err(BadInput("--long-term: it is of one-pass results; leave --protocol out".into()).into());
+    }
+    let long_term = args.scored.long_term(&dataset, &results, toolkit, false)?;
+    let outcome = outcome(args, &table, long_term.as_deref())?;
     print(&text(&outcome))?;
     if let Some(path) = &args.json {
         write(path, format!("{}\n", serde_json::to_string_pretty(&outcome)?).as_bytes())?;
@@ -80,26 +103,43 @@ pub fn run(args: &CompareArgs) -> Result<()> {
     problems.into_strict_result(args.scored.strict)
 }
 
-fn outcome(args: &CompareArgs, table: &Table) -> Result<Outcome> {
+fn outcome(args: &CompareArgs, table: &Table, long_term: Option<&[LongTermScores]>) -> Result<Outcome> {
     let (first, second) = (&table.trackers[0], &table.trackers[1]);
-    let of = |measure: Measure| {
-        compare_scores(first, second, measure).ok_or_else(|| {
-            BadInput(format!(
-                "{} and {} have no sequence in common; run both with the same --sequences",
-                args.first, args.second
-            ))
-        })
+    let nothing = || {
+        BadInput(format!(
+            "{} and {} have no sequence in common; run both with the same --sequences",
+            args.first, args.second
+        ))
     };
+    common_sequences(first, second).then_some(()).ok_or_else(nothing)?;
+    let of = |measure: Measure| {
+        let comparison = compare_scores(first, second, measure).ok_or_else(|| {
+            let (name, toolkit) = (measure.name(), table.toolkit);
+            BadInput(format!("--measure {name}: {toolkit} has none; choose another, or another --toolkit"))
+        })?;
+        Ok(Compared { measure: measure.key(), title: measure.title(), comparison })
+    };
+    let asked =
+        if args.measure.is_empty() { Measure::compared(table.toolkit) } else { args.measure.as_slice() };
+    let mut measures = asked.iter().map(|measure| of(*measure)).collect::<Result<Vec<Compared>>>()?;
+    if let Some([first, second]) = long_term {
+        let comparison = compare_long_term(first, second).ok_or_else(nothing)?;
+        measures.push(Compared { measure: "f", title: "best F", comparison });
+    }
     Ok(Outcome {
         first: args.first.clone(),
         second: args.second.clone(),
         protocol: args.protocol,
         toolkit: table.toolkit,
-        auc: of(Measure::Auc)?,
-        precision: of(Measure::Precision)?,
+        measures,
         time_ratio: time_ratio(first, second),
         seeds: common_seeds(first, second),
     })
+}
+
+/// Whether both have scores of some sequence.
+fn common_sequences(first: &TrackerScores, second: &TrackerScores) -> bool {
+    first.sequences.iter().zip(&second.sequences).any(|(a, b)| a.scores.is_some() && b.scores.is_some())
 }
 
 fn time_ratio(first: &TrackerScores, second: &TrackerScores) -> Option<f64> {
@@ -114,12 +154,12 @@ fn time_ratio(first: &TrackerScores, second: &TrackerScores) -> Option<f64> {
 }
 
 fn text(outcome: &Outcome) -> String {
-    let Outcome { first, second, auc, precision, .. } = outcome;
+    let Outcome { first, second, measures, .. } = outcome;
+    let sequences = measures.iter().map(|one| one.comparison.sequences.len()).max().unwrap_or_default();
     let mut text = format!(
-        "{first} against {second}: {} under the rules of {}, {} sequences, {}\n\n",
+        "{first} against {second}: {} under the rules of {}, {sequences} sequences, {}\n\n",
         outcome.protocol.title(),
         outcome.toolkit,
-        auc.sequences.len(),
         match outcome.seeds.len() {
             0 => "each one's mean over its own seeds, of which none is in common".to_owned(),
             count => format!("{count} paired seed(s)"),
@@ -127,9 +167,9 @@ fn text(outcome: &Outcome) -> String {
     );
     let mut summary =
         TextTable::new(["measure", first, second, "difference", "95 % interval", "", "p", "wins"]);
-    for (measure, one) in [(Measure::Auc, auc), (Measure::Precision, precision)] {
+    for Compared { title, comparison: one, .. } in measures {
         summary.row([
-            measure.title().to_owned(),
+            (*title).to_owned(),
             format!("{:.4}", one.first),
             format!("{:.4}", one.second),
             format!("{:+.4}", one.difference),
@@ -145,27 +185,33 @@ fn text(outcome: &Outcome) -> String {
         let _ =
             writeln!(text, "an update of {first} takes {ratio:.3} times one of {second} (geometric mean)\n");
     }
-    let mut rows = TextTable::new([
-        "sequence",
-        "AUC of A",
-        "of B",
-        "difference",
-        "precision of A",
-        "of B",
-        "difference",
-    ]);
-    for (auc, precision) in auc.sequences.iter().zip(&precision.sequences) {
-        let spread =
-            |deviation: Option<f64>| deviation.map_or(String::new(), |value| format!(" ± {value:.4}"));
-        rows.row([
-            auc.sequence.clone(),
-            format!("{:.4}", auc.first),
-            format!("{:.4}", auc.second),
-            format!("{:+.4}{}", auc.difference, spread(auc.deviation)),
-            format!("{:.4}", precision.first),
-            format!("{:.4}", precision.second),
-            format!("{:+.4}{}", precision.difference, spread(precision.deviation)),
-        ]);
+    text + &by_sequence(measures).to_string()
+}
+
+/// A row a sequence, three columns a measure.
+fn by_sequence(measures: &[Compared]) -> TextTable {
+    let of_measure = |one: &Compared| [format!("{} of A", one.title), "of B".into(), "difference".into()];
+    let header = ["sequence".to_owned()].into_iter().chain(measures.iter().flat_map(of_measure));
+    let mut rows = TextTable::new(header);
+    let mut names: Vec<&str> = Vec::new();
+    for one in measures.iter().flat_map(|one| &one.comparison.sequences) {
+        if !names.contains(&one.sequence.as_str()) {
+            names.push(&one.sequence);
+        }
     }
-    text + &rows.to_string()
+    for name in names {
+        let cells = |one: &Compared| {
+            let Some(found) = one.comparison.sequences.iter().find(|found| found.sequence == name) else {
+                return ["-", "-", "-"].map(str::to_owned);
+            };
+            let spread = found.deviation.map_or(String::new(), |value| format!(" ± {value:.4}"));
+            [
+                format!("{:.4}", found.first),
+                format!("{:.4}", found.second),
+                format!("{:+.4}{spread}", found.difference),
+            ]
+        };
+        rows.row([name.to_owned()].into_iter().chain(measures.iter().flat_map(cells)));
+    }
+    rows
 }

@@ -20,12 +20,12 @@ Examples:
   otb_eval convert tracker_benchmark/results results --from jwlim --to run --trackers STRUCK,TLD
 
 Layouts:
-  run         PROTOCOL/TRACKER/seed_S/SEQ[_SEGMENT].txt, as `otb_eval run` writes; times beside
-  flat        TRACKER/SEQ.txt, SEQ_time.txt beside
+  run         PROTOCOL/TRACKER/seed_S/SEQ[_SEGMENT].txt, as `otb_eval run` writes; times and confidences beside
+  flat        TRACKER/SEQ.txt, SEQ_time.txt and SEQ_confidence.txt beside
   pysot       TRACKER/SEQ.txt, no times
   got10k      OTB2015/TRACKER/SEQ.txt, times/SEQ_time.txt
   got10k-set  TRACKER/SEQ/SEQ_00K.txt, repetition K being a seed; SEQ/SEQ_time.txt, a column a repetition
-  pytracking  TRACKER/PARAM[_RRR]/SEQ.txt with tabs, SEQ_time.txt beside; RRR is the seed
+  pytracking  TRACKER/PARAM[_RRR]/SEQ.txt with tabs, SEQ_time.txt and SEQ_object_presence_scores.txt beside; RRR is the seed
   jwlim       OPE|TRE|SRE/TRACKER/SEQ.json of the Python benchmark: frames/s instead of times
 
 Sequences get the spelling of the layout (Jogging-1, Jogging_1, Jogging.1), and what --prefix says before it; boxes keep every \

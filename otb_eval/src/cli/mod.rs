@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 use anyhow::Error;
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 use infopart::program::{self, BAD_INPUT, INTERRUPTED};
 use otb_eval::{
     catalogue::CatalogueError,
@@ -85,6 +85,9 @@ enum Command {
     /// Turn results from one toolkit's layout into another's
     #[command(after_help = convert::EXAMPLES)]
     Convert(convert::ConvertArgs),
+    /// Print what a shell needs to complete the program's words, or write man pages
+    #[command(after_help = program::completions_examples("otb_eval"))]
+    Completions(program::CompletionsArgs),
     /// Run a tracker's command so that it ends when the evaluation does; `run` uses it
     #[command(name = SUPERVISE, hide = true)]
     Supervise(supervise::SuperviseArgs),
@@ -108,6 +111,7 @@ pub fn main() -> ExitCode {
         Command::Score(args) => score::score(&args),
         Command::Compare(args) => compare::run(&args),
         Command::Convert(args) => convert::run(&args),
+        Command::Completions(args) => program::completions(Cli::command(), &args).map_err(Into::into),
         Command::Supervise(args) => return supervise::supervise(&args),
         Command::Submit(args) => submit::submit(&args),
         Command::Plot(args) => plot::plot(&args),

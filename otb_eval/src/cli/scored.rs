@@ -160,10 +160,6 @@ impl ScoredArgs {
             let how = "--trackers: the two trackers are A and B themselves; leave the flag out";
             return Err(BadInput(how.into()).into());
         }
-        if self.long_term {
-            let how = "--long-term: two trackers are not compared in it; use `otb_eval score --long-term`";
-            return Err(BadInput(how.into()).into());
-        }
         Ok(())
     }
 

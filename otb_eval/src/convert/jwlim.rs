@@ -97,7 +97,7 @@ fn read_file(path: &Path, tracker: &str, protocol: Protocol) -> Result<Vec<Track
         let start = starts[index].filter(|_| protocol == Protocol::Tre);
         let start = start.and_then(|start| start.checked_sub(first_frame));
         let (tracker, sequence) = (tracker.to_owned(), sequence.clone());
-        Ok(Track { tracker, protocol, seed: 0, sequence, label, start, rows, seconds })
+        Ok(Track { tracker, protocol, seed: 0, sequence, label, start, rows, seconds, confidences: None })
     };
     segments.into_iter().enumerate().map(track).collect()
 }

@@ -27,9 +27,9 @@ use crate::{
 /// How results lie in folders and files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Layout {
-    /// `PROTOCOL/TRACKER/seed_S/SEQ[_SEGMENT].txt`, as `otb_eval run` writes, with times and a record of each.
+    /// `PROTOCOL/TRACKER/seed_S/SEQ[_SEGMENT].txt`, as `otb_eval run` writes, with times, confidences and a record of each.
     Run,
-    /// `TRACKER/SEQ.txt` with `SEQ_time.txt` beside.
+    /// `TRACKER/SEQ.txt` with `SEQ_time.txt` and `SEQ_confidence.txt` beside.
     Flat,
     /// `TRACKER/SEQ.txt`, commas, no times.
     Pysot,
@@ -37,7 +37,7 @@ pub enum Layout {
     Got10k,
     /// `TRACKER/SEQ/SEQ_00K.txt`, as the GOT-10k toolkit has them for GOT-10k itself, with `SEQ/SEQ_time.txt`.
     Got10kSet,
-    /// `TRACKER/PARAM[_RRR]/SEQ.txt`, tabs, with `SEQ_time.txt` beside.
+    /// `TRACKER/PARAM[_RRR]/SEQ.txt`, tabs, with `SEQ_time.txt` and `SEQ_object_presence_scores.txt` beside.
     Pytracking,
     /// `OPE/TRACKER/SEQ.json`, and `TRE`, `SRE`: a list of segments with frames per second.
     Jwlim,
@@ -131,6 +131,8 @@ pub struct Track {
     pub rows: Vec<Rect>,
     /// The seconds of each frame, if they are known; from a layout that knows frames per second alone, their mean.
     pub seconds: Option<Vec<f64>>,
+    /// How sure the tracker was in each frame, if that is known; NaN where nothing is said.
+    pub confidences: Option<Vec<f64>>,
 }
 
 /// Results that cannot be converted.

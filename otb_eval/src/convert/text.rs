@@ -77,12 +77,12 @@ fn of_protocol(
                 let (sequence, label) = split(file, protocol);
                 let at = || path.join(&tracker.name).join(format!("{file}.txt"));
                 match track_of(seed, &sequence, label.as_deref()) {
-                    Ok((result, _)) if result.first_is_given => problems.push(ConvertError::File {
+                    Ok((result, ..)) if result.first_is_given => problems.push(ConvertError::File {
                         path: at(),
                         problem: "its first line is VOT's code for the box given, which only the ground truth knows; write that box there"
                             .to_owned(),
                     }),
-                    Ok((result, seconds)) => {
+                    Ok((result, seconds, confidences)) => {
                         problems.extend(result.read_as.map(|how| ConvertError::Read { path: at(), how }));
                         tracks.push(Track {
                             tracker: tracker.name.clone(),
@@ -93,6 +93,7 @@ fn of_protocol(
                             start: result.start.filter(|_| protocol == Protocol::Tre),
                             rows: result.rows,
                             seconds,
+                            confidences,
                         });
                     }
                     Err(problem) => problems.push(problem.into()),
@@ -107,15 +108,14 @@ fn of_protocol(
     Ok(tracks)
 }
 
-/// A result and its times.
-fn track_of(
-    seed: &SeedResults,
-    sequence: &str,
-    label: Option<&str>,
-) -> Result<(ResultFile, Option<Vec<f64>>), ResultsError> {
+/// A result, its times, and how sure the tracker was, as a file beside it says, or else a column of it.
+fn track_of(seed: &SeedResults, sequence: &str, label: Option<&str>) -> Result<Read, ResultsError> {
     let file = seed.read(sequence, label).transpose()?.unwrap_or_default();
-    Ok((file, seed.read_seconds(sequence, label).transpose()?))
+    let confidences = seed.read_confidences(sequence, label).transpose()?.or_else(|| file.scores.clone());
+    Ok((file, seed.read_seconds(sequence, label).transpose()?, confidences))
 }
+
+type Read = (ResultFile, Option<Vec<f64>>, Option<Vec<f64>>);
 
 /// `SEQ_SEGMENT` into both.
 fn split(stem: &str, protocol: Protocol) -> (String, Option<String>) {
@@ -156,6 +156,10 @@ pub(super) fn files(layout: Layout, tracks: &[Track]) -> Vec<OutputFile> {
             let times = if layout == Layout::Got10k { folder.join("times") } else { folder.clone() };
             files.push(file(times.join(format!("{stem}_time.txt")), lines_of(seconds), false));
         }
+        if let (Some(confidences), Some(ending)) = (&track.confidences, confidence_file(layout)) {
+            let text = confidences.iter().map(|confidence| format!("{confidence}\n")).collect();
+            files.push(file(folder.join(format!("{stem}{ending}")), text, false));
+        }
         let separator = if layout == Layout::Pytracking { '\t' } else { ',' };
         let (path, text) = (folder.join(format!("{stem}.txt")), rows_of(track, separator));
         if layout == Layout::Run {
@@ -166,6 +170,15 @@ pub(super) fn files(layout: Layout, tracks: &[Track]) -> Vec<OutputFile> {
         files.push(file(path, text, true));
     }
     files
+}
+
+/// What a layout calls the file of confidences after the sequence; `None` where it has no place for it.
+const fn confidence_file(layout: Layout) -> Option<&'static str> {
+    match layout {
+        Layout::Run | Layout::Flat => Some("_confidence.txt"),
+        Layout::Pytracking => Some("_object_presence_scores.txt"),
+        _ => None,
+    }
 }
 
 fn tracker_folder(layout: Layout, track: &Track, tracks: &[Track]) -> PathBuf {

@@ -4,6 +4,7 @@
 //! them, and each has rules of its own for rows that are no boxes.
 
 mod folder;
+mod frames;
 mod json;
 mod roots;
 
@@ -14,10 +15,12 @@ use std::{
 };
 
 use infopart::{
-    geometry::{Origin, Rect},
+    geometry::Rect,
     sequence::{Benchmark, PolygonBox, SequenceError},
 };
 use thiserror::Error;
+
+pub use frames::{FrameFiles, FrameFolder};
 
 use crate::{
     catalogue,
@@ -53,21 +56,6 @@ pub struct Annotations {
     pub resolution: Option<(usize, usize)>,
     /// Whether only the first box is known, since a server keeps the others: nothing can be scored here.
     pub first_only: bool,
-}
-
-/// Where the frames of a target are.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct FrameFolder {
-    /// The sequence's folder, or the file of its ground truth where that lies apart: what [`infopart::sequence::open`] takes.
-    pub path: PathBuf,
-    /// Which target of the folder, if they are numbered.
-    pub target: Option<usize>,
-    /// The first frame of the truth, counted from 1 among the frames that [`infopart::sequence::open`] delivers.
-    pub first_frame: usize,
-    /// The number of the first pixel in its boxes.
-    pub origin: Origin,
-    /// The file of its ground truth.
-    pub ground_truth: PathBuf,
 }
 
 /// Targets in the order of their discovery.

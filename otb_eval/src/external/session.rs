@@ -37,6 +37,10 @@ pub(super) struct State {
     pub box_in_frame: Rect,
     /// Seconds that it says it took itself.
     pub own_seconds: Option<f64>,
+    /// How sure it says that it is.
+    pub confidence: Option<f64>,
+    /// Whether it says that the target is lost.
+    pub is_lost: bool,
 }
 
 /// A running tracker and how it wants to be spoken to.
@@ -118,9 +122,17 @@ impl<'a> Session<'a> {
         };
         let box_in_frame = parse_region(region)
             .map_err(|error| broken(format!("is no box: {}", printable(&error.to_string()))))?;
-        let own_seconds = message.property("time").and_then(|text| text.parse().ok());
-        let own_seconds = own_seconds.filter(|seconds: &f64| seconds.is_finite() && *seconds >= 0.0);
-        Ok(State { box_in_frame, own_seconds })
+        let number = |name: &str| {
+            let number = message.property(name).and_then(|text| text.parse().ok());
+            number.filter(|number: &f64| number.is_finite())
+        };
+        let own_seconds = number("time").filter(|seconds| *seconds >= 0.0);
+        Ok(State {
+            box_in_frame,
+            own_seconds,
+            confidence: number("confidence"),
+            is_lost: message.property("status") == Some("lost"),
+        })
     }
 
     fn say(&mut self, message: &Message, what: &str) -> Result<(), Trouble> {

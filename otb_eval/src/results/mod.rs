@@ -256,13 +256,17 @@ impl SeedResults {
         Some(file::read_seconds(path, *column))
     }
 
-    /// Reads how sure the tracker was in each frame of a one-pass result; `None` if that is not known. A NaN is a frame of which
-    /// nothing is said.
+    /// Reads how sure the tracker was in each frame of a segment; `None` if that is not known. A NaN is a frame of which nothing is
+    /// said.
     ///
     /// # Errors
     /// [`ResultsError`], naming the file and line.
-    pub fn read_confidences(&self, sequence: &str) -> Option<Result<Vec<f64>, ResultsError>> {
-        let path = self.files.get(&listed_as(sequence))?.confidences.as_ref()?;
+    pub fn read_confidences(
+        &self,
+        sequence: &str,
+        label: Option<&str>,
+    ) -> Option<Result<Vec<f64>, ResultsError>> {
+        let path = self.files.get(&listed_as(&stem(sequence, label)))?.confidences.as_ref()?;
         Some(file::read_confidences(path))
     }
 

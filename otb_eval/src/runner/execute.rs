@@ -25,12 +25,21 @@ pub struct Recording {
     pub rows: Vec<Rect>,
     /// Seconds that `init` and then each `update` took, by the tracker's own account if it gives one.
     pub seconds: Vec<f64>,
-    /// Seconds from each image sent to a tracker in another process to its answer.
-    pub round_trips: Option<Vec<f64>>,
+    /// What is known besides of a tracker in another process.
+    pub external: Option<Conversation>,
     /// How sure the tracker was of each box, in [0, 1].
     pub confidences: Vec<f64>,
     /// The number of the first pixel in the truth's boxes.
     pub origin: Origin,
+}
+
+/// How a tracker in another process answered.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Conversation {
+    /// Seconds from each image sent to its answer.
+    pub round_trips: Vec<f64>,
+    /// Answers that said that the target is lost; their boxes are kept as any.
+    pub lost_frames: usize,
 }
 
 impl Default for Recording {
@@ -38,7 +47,7 @@ impl Default for Recording {
         Self {
             rows: Vec::new(),
             seconds: Vec::new(),
-            round_trips: None,
+            external: None,
             confidences: Vec::new(),
             origin: Origin::One,
         }

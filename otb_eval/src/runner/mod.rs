@@ -5,11 +5,11 @@
 
 mod execute;
 mod factory;
-mod job;
+pub(crate) mod job;
 mod plan;
 mod pool;
 
-pub use execute::{JobFailure, Recording, execute};
+pub use execute::{Conversation, JobFailure, Recording, execute};
 pub use factory::{
     ColourFactory, FactoryError, InfoPartFactory, Made, NAMES, OwnFactory, TrackerFactory, TrackerParameters,
     named_factory,

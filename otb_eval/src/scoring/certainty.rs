@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::{Measure, Table, TrackerScores};
+use super::{LongTermScores, LongTermSequence, Measure, Table, TrackerScores};
 use crate::{
     compare::{Comparison, Pair, compare},
     statistics::{Interval, RESAMPLES, holm, intervals, mean},
@@ -70,11 +70,12 @@ fn pairs(first: &TrackerScores, second: &TrackerScores, measure: Measure) -> Vec
     let seeds = common_seeds(first, second);
     let value = |one: &TrackerScores, row: usize, seed: u64| {
         let place = one.seeds.iter().position(|known| *known == seed)?;
-        measure.on(one.sequences[row].curves[place].as_ref()?)
+        measure.on(one.sequences[row].curves[place].as_ref()?).filter(|value| !value.is_nan())
     };
     let of_all = |one: &TrackerScores, row: usize| {
         let curves = one.sequences[row].curves.iter().flatten();
-        let values: Vec<f64> = curves.filter_map(|curves| measure.on(curves)).collect();
+        let values: Vec<f64> =
+            curves.filter_map(|curves| measure.on(curves)).filter(|value| !value.is_nan()).collect();
         (!values.is_empty()).then(|| mean(values.into_iter()))
     };
     let pair = |row: usize| {
@@ -87,6 +88,24 @@ fn pairs(first: &TrackerScores, second: &TrackerScores, measure: Measure) -> Vec
         Pair { sequence: first.sequences[row].sequence.clone(), first: one, second: other }
     };
     (0..first.sequences.len()).map(pair).filter(|pair| !pair.first.is_empty()).collect()
+}
+
+/// Two trackers in the best F of each sequence, paired by the seeds that both have, or by their means where they have none in
+/// common; `None` without a sequence of both.
+pub fn compare_long_term(first: &LongTermScores, second: &LongTermScores) -> Option<Comparison> {
+    let pair = |one: &LongTermSequence| {
+        let other = second.sequences.iter().find(|other| other.sequence == one.sequence)?;
+        let of =
+            |seeds: &[(u64, f64)], seed: u64| seeds.iter().find(|(known, _)| *known == seed).map(|(_, f)| *f);
+        let both = |&(seed, f): &(u64, f64)| Some((f, of(&other.seeds, seed)?));
+        let (mut one_has, mut other_has): (Vec<f64>, Vec<f64>) = one.seeds.iter().filter_map(both).unzip();
+        if one_has.is_empty() {
+            (one_has, other_has) = (vec![one.f], vec![other.f]);
+        }
+        Some(Pair { sequence: one.sequence.clone(), first: one_has, second: other_has })
+    };
+    let pairs: Vec<Pair> = first.sequences.iter().filter_map(pair).collect();
+    compare(&pairs, RESAMPLES, BOOTSTRAP_SEED)
 }
 
 /// The seeds that both trackers have.

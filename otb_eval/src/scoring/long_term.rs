@@ -51,10 +51,22 @@ pub struct LongTermScores {
     pub best: Option<LongTermPoint>,
     /// The first seed's points, by falling threshold.
     pub curve: Vec<LongTermPoint>,
-    /// The best F of each sequence, the mean over seeds, in the order of the data.
-    pub sequences: Vec<(String, f64)>,
+    /// Each sequence by itself, in the order of the data.
+    pub sequences: Vec<LongTermSequence>,
     /// Whether it says how sure it is; else every box is an answer, and there is one threshold.
     pub has_confidence: bool,
+}
+
+/// A tracker's best F on one sequence, at a threshold of that sequence's own.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct LongTermSequence {
+    /// The sequence.
+    pub sequence: String,
+    /// The mean over seeds.
+    pub f: f64,
+    /// Each seed's.
+    #[serde(skip)]
+    pub seeds: Vec<(u64, f64)>,
 }
 
 /// Frames of one sequence: how sure the tracker was where it gave a box, and the overlap there.
@@ -77,7 +89,8 @@ pub fn long_term(dataset: &Dataset, results: &Results, options: &ScoreOptions) -
         targets.iter().filter_map(|target| answers(target, seed)).collect()
     };
     let of_tracker = |tracker: &crate::results::TrackerResults| {
-        let seeds: Vec<Vec<Answers>> = tracker.seeds.iter().map(of_seed).collect();
+        let seeds: Vec<(u64, Vec<Answers>)> =
+            tracker.seeds.iter().map(|seed| (seed.seed, of_seed(seed))).collect();
         scores(&tracker.name, &seeds)
     };
     results.trackers.iter().map(of_tracker).collect()
@@ -92,18 +105,23 @@ pub fn has_absence(dataset: &Dataset) -> bool {
     dataset.targets.iter().any(is_absent)
 }
 
-fn scores(tracker: &str, seeds: &[Vec<Answers>]) -> LongTermScores {
-    let curves: Vec<Vec<LongTermPoint>> = seeds.iter().map(|sequences| curve(sequences)).collect();
+fn scores(tracker: &str, seeds: &[(u64, Vec<Answers>)]) -> LongTermScores {
+    let curves: Vec<Vec<LongTermPoint>> = seeds.iter().map(|(_, sequences)| curve(sequences)).collect();
     let best_of =
         |curve: &Vec<LongTermPoint>| curve.iter().copied().reduce(|a, b| if b.f() > a.f() { b } else { a });
     let best: Vec<f64> = curves.iter().filter_map(best_of).map(|point| point.f()).collect();
-    let mut sequences: Vec<(String, Vec<f64>)> = Vec::new();
-    for one in seeds.iter().flatten() {
+    let mut sequences: Vec<LongTermSequence> = Vec::new();
+    for (seed, one) in seeds.iter().flat_map(|(seed, all)| all.iter().map(move |one| (*seed, one))) {
         let Some(f) = best_of(&curve(std::slice::from_ref(one))).map(|point| point.f()) else { continue };
-        match sequences.iter_mut().find(|(name, _)| *name == one.sequence) {
-            Some((_, values)) => values.push(f),
-            None => sequences.push((one.sequence.clone(), vec![f])),
+        match sequences.iter_mut().find(|known| known.sequence == one.sequence) {
+            Some(known) => known.seeds.push((seed, f)),
+            None => {
+                sequences.push(LongTermSequence { sequence: one.sequence.clone(), f, seeds: vec![(seed, f)] })
+            }
         }
+    }
+    for one in &mut sequences {
+        one.f = mean(one.seeds.iter().map(|(_, f)| *f));
     }
     LongTermScores {
         tracker: tracker.to_owned(),
@@ -111,8 +129,8 @@ fn scores(tracker: &str, seeds: &[Vec<Answers>]) -> LongTermScores {
             .then(|| Spread { mean: mean(best.iter().copied()), deviation: deviation(&best) }),
         best: curves.first().and_then(best_of),
         curve: curves.into_iter().next().unwrap_or_default(),
-        sequences: sequences.into_iter().map(|(name, values)| (name, mean(values.into_iter()))).collect(),
-        has_confidence: seeds.iter().flatten().any(|one| one.has_confidence),
+        sequences,
+        has_confidence: seeds.iter().flat_map(|(_, all)| all).any(|one| one.has_confidence),
     }
 }
 
@@ -120,7 +138,7 @@ fn scores(tracker: &str, seeds: &[Vec<Answers>]) -> LongTermScores {
 fn answers(target: &Target, seed: &SeedResults) -> Option<Answers> {
     let mut file = seed.read(&target.name, None)?.ok()?;
     let dropped = target.align(&mut file.rows);
-    let said = seed.read_confidences(&target.name).and_then(Result::ok).or(file.scores);
+    let said = seed.read_confidences(&target.name, None).and_then(Result::ok).or(file.scores);
     let confidences: Option<Vec<f64>> = said.map(|all| all.into_iter().skip(dropped).collect());
     if file.first_is_given
         && let (Some(first), Some(given)) = (file.rows.first_mut(), target.truth.first())
@@ -208,10 +226,11 @@ mod tests {
         let points = curve(&[of(&[(0.9, 1.0)], 1), of(&[(0.5, 0.5)], 2)]);
         assert_eq!((points[0].precision, points[0].recall), (1.0, 0.5), "the second has not answered yet");
         assert_eq!((points[1].precision, points[1].recall), (0.75, 0.625));
-        let scores = scores("T", &[vec![of(&[(0.9, 1.0)], 1)], vec![of(&[(0.9, 0.5)], 1)]]);
+        let scores = scores("T", &[(1, vec![of(&[(0.9, 1.0)], 1)]), (2, vec![of(&[(0.9, 0.5)], 1)])]);
         let f = scores.f.unwrap();
         assert_eq!((f.mean, f.deviation.map(|d| (d * d * 8.0).round())), (0.75, Some(1.0)));
-        assert_eq!(scores.sequences, [("s".to_owned(), 0.75)]);
+        let seeds = vec![(1, 1.0), (2, 0.5)];
+        assert_eq!(scores.sequences, [LongTermSequence { sequence: "s".into(), f: 0.75, seeds }]);
     }
 
     #[test]

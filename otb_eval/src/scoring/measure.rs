@@ -71,6 +71,15 @@ impl Measure {
         }
     }
 
+    /// The measures that two trackers are compared in, if no others are asked for.
+    pub const fn compared(toolkit: Toolkit) -> &'static [Self] {
+        match toolkit {
+            Toolkit::AverageOverlap => Self::quoted(toolkit),
+            Toolkit::Lasot => &[Self::Auc, Self::Precision, Self::NormalisedArea],
+            _ => &[Self::Auc, Self::Precision],
+        }
+    }
+
     /// The name in flags.
     pub const fn name(self) -> &'static str {
         match self {

@@ -26,8 +26,8 @@ use crate::{
     toolkits::Rules,
 };
 
-pub use certainty::{Against, against, certainty, common_seeds, compare_scores};
-pub use long_term::{LongTermPoint, LongTermScores, has_absence, long_term};
+pub use certainty::{Against, against, certainty, common_seeds, compare_long_term, compare_scores};
+pub use long_term::{LongTermPoint, LongTermScores, LongTermSequence, has_absence, long_term};
 pub use measure::{Measure, UnknownMeasure};
 pub use problem::{ScoreProblem, Weight};
 pub use segments::{Segment, segments_of, start_of};

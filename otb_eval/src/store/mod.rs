@@ -13,7 +13,7 @@ use std::{
 
 use thiserror::Error;
 
-use crate::runner::{Job, Recording};
+use crate::runner::{Conversation, Job, Recording};
 
 pub use identity::{Identity, Machine};
 pub use kept::Kept;
@@ -103,10 +103,12 @@ impl Store {
         }
         let record = Record::new(rows.as_bytes(), recording.rows.len(), Some(job.segment.start));
         self.write(&job.time_path(), &seconds)?;
-        if let Some(round_trips) = &recording.round_trips {
+        if let Some(Conversation { round_trips, lost_frames }) = &recording.external {
             let is_own = *round_trips != recording.seconds;
             let times = if is_own { "the tracker's own" } else { "round trips" };
-            let text = serde_json::json!({ "times": times, "round_trip_seconds": round_trips });
+            let text = serde_json::json!({
+                "times": times, "lost_frames": lost_frames, "round_trip_seconds": round_trips,
+            });
             self.write(&job.external_path(), &format!("{text}\n"))?;
         }
         if !confidences.is_empty() {

@@ -46,7 +46,7 @@ fn results_stand_where_the_layout_says_with_every_digit() {
     let recording = Recording {
         rows: vec![Rect::new(1.0, 2.5, 3.0, 4.0), Rect::new(1.0 / 3.0, -7.0, 10.25, 16.0)],
         seconds: vec![0.25, 0.001_234_567_89],
-        round_trips: Some(vec![0.5, 0.25]),
+        external: Some(Conversation { round_trips: vec![0.5, 0.25], lost_frames: 1 }),
         confidences: vec![1.0, 1.0 / 3.0],
         ..Recording::default()
     };
@@ -60,7 +60,9 @@ fn results_stand_where_the_layout_says_with_every_digit() {
     assert_eq!(read("Crossing_confidence.txt"), "1\n0.3333333333333333\n");
     assert_eq!(read("Crossing_time.txt"), "0.25000000\n0.00123457\n");
     let external: serde_json::Value = serde_json::from_str(&read("Crossing.external.json")).unwrap();
-    let expected = serde_json::json!({ "times": "the tracker's own", "round_trip_seconds": [0.5, 0.25] });
+    let expected = serde_json::json!({
+        "times": "the tracker's own", "lost_frames": 1, "round_trip_seconds": [0.5, 0.25],
+    });
     assert_eq!(external, expected);
     let record: Record = serde_json::from_str(&read("Crossing.result.json")).unwrap();
     assert_eq!((record.first_row, record.rows), (Some(1), 2));

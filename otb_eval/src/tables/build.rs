@@ -150,15 +150,15 @@ pub fn long_term(scores: &[LongTermScores]) -> ScoreTable {
 /// The best F of each sequence.
 pub fn long_term_by_sequence(scores: &[LongTermScores]) -> ScoreTable {
     let mut sequences: Vec<&str> = Vec::new();
-    for (name, _) in scores.iter().flat_map(|one| &one.sequences) {
-        if !sequences.contains(&name.as_str()) {
-            sequences.push(name);
+    for one in scores.iter().flat_map(|one| &one.sequences) {
+        if !sequences.contains(&one.sequence.as_str()) {
+            sequences.push(&one.sequence);
         }
     }
     let row = |sequence: &&str| {
         let f = |one: &LongTermScores| {
-            let found = one.sequences.iter().find(|(name, _)| name == sequence);
-            Cell::Score(found.map(|(_, f)| Scored { value: *f, deviation: None, interval: None }))
+            let found = one.sequences.iter().find(|found| found.sequence == *sequence);
+            Cell::Score(found.map(|found| Scored { value: found.f, deviation: None, interval: None }))
         };
         [Cell::Text((*sequence).to_owned())].into_iter().chain(scores.iter().map(f)).collect()
     };

@@ -171,7 +171,7 @@ impl BenchmarkSequence {
         let boxes: Vec<Option<Rect>> = truth.rows.iter().copied().enumerate().map(present).collect();
         let (source, first): (Box<dyn super::FrameSource>, usize) = match &self.frames {
             FramePlace::Video(video) => {
-                let source = VideoFile::open(VideoInput::File(video.clone()), range)?;
+                let source = VideoFile::open(VideoInput::File(video.clone()), range, options.wait)?;
                 (Box::new(source), range.start - 1)
             }
             FramePlace::Folder(folder) => {

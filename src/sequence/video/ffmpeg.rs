@@ -1,16 +1,20 @@
 //! The ffmpeg process: its arguments, its frames, its end.
 
 use std::{
-    ffi::OsString,
-    io::{self, BufReader},
-    path::{Path, PathBuf},
-    process::{Child, ChildStdout, Command, ExitStatus, Stdio},
+    io,
+    path::Path,
+    process::{Child, Command, ExitStatus, Stdio},
     sync::{Arc, Mutex, PoisonError},
     thread,
     time::{Duration, Instant},
 };
 
-use super::{super::SequenceError, log::LogReader, ppm::read_ppm};
+use super::{
+    super::SequenceError,
+    input::VideoInput,
+    log::LogReader,
+    pipe::{Frames, Patience, Trouble},
+};
 use crate::frame::Frame;
 
 /// The option that makes ffmpeg neither drop nor repeat frames, new and old spelling.
@@ -26,62 +30,12 @@ pub(super) struct RawFrame {
     pub(super) time: Option<Duration>,
 }
 
-/// What ffmpeg is to read.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(in super::super) enum VideoInput {
-    /// A file.
-    File(PathBuf),
-    /// A named pipe.
-    Fifo(PathBuf),
-    /// Standard input.
-    Standard,
-    /// An address that was meant as one.
-    Url(String),
-    /// A capture device, by ffmpeg's name of its kind and its own.
-    Device {
-        /// ffmpeg's `-f`.
-        format: String,
-        /// What ffmpeg calls the device.
-        name: String,
-    },
-}
-
-impl VideoInput {
-    /// What messages call it.
-    pub(super) fn name(&self) -> PathBuf {
-        match self {
-            Self::File(path) | Self::Fifo(path) => path.clone(),
-            Self::Standard => PathBuf::from("standard input"),
-            Self::Url(name) | Self::Device { name, .. } => PathBuf::from(name),
-        }
-    }
-
-    /// The options before `-i`, and what follows it. With the protocol named, no path is taken for an option, a URL or a pattern.
-    fn arguments(&self) -> (Vec<&str>, OsString) {
-        let file = |path: &Path| {
-            let mut input = OsString::from("file:");
-            input.push(path);
-            input
-        };
-        match self {
-            Self::File(path) | Self::Fifo(path) => (vec![], file(path)),
-            Self::Standard => (vec![], "pipe:0".into()),
-            Self::Url(url) => (vec!["-fflags", "nobuffer"], url.into()),
-            Self::Device { format, name } => (vec!["-fflags", "nobuffer", "-f", format], name.into()),
-        }
-    }
-
-    fn stdin(&self) -> Stdio {
-        if *self == Self::Standard { Stdio::inherit() } else { Stdio::null() }
-    }
-}
-
 /// A running ffmpeg, ended on drop.
 #[derive(Debug)]
 pub(super) struct Decoder {
     child: Stopper,
     /// `None` once it is given up.
-    frames: Option<BufReader<ChildStdout>>,
+    frames: Option<Frames>,
     log: LogReader,
     first_time: Option<f64>,
     last_time: Option<Duration>,
@@ -116,12 +70,16 @@ impl Stopper {
 
 impl Decoder {
     /// Starts ffmpeg on an input and waits for its first frame.
-    pub(super) fn start(program: &str, input: &VideoInput) -> Result<(Self, RawFrame), SequenceError> {
+    pub(super) fn start(
+        program: &str,
+        input: &VideoInput,
+        patience: Patience,
+    ) -> Result<(Self, RawFrame), SequenceError> {
         let [new, old] = NO_RESAMPLING;
-        match Self::try_start(program, input, new)? {
+        match Self::try_start(program, input, new, patience.clone())? {
             Ok(started) => Ok(started),
             Err(lines) if lines.iter().any(|line| line.contains("fps_mode")) => {
-                Self::try_start(program, input, old)?.map_err(|lines| bad_video(input, &lines))
+                Self::try_start(program, input, old, patience)?.map_err(|lines| bad_video(input, &lines))
             }
             Err(lines) => Err(bad_video(input, &lines)),
         }
@@ -132,8 +90,9 @@ impl Decoder {
         program: &str,
         input: &VideoInput,
         no_resampling: &str,
+        patience: Patience,
     ) -> Result<Result<(Self, RawFrame), Vec<String>>, SequenceError> {
-        let mut decoder = Self::spawn(program, input, no_resampling)?;
+        let mut decoder = Self::spawn(program, input, no_resampling, patience)?;
         match decoder.read() {
             Ok(Some(frame)) => {
                 let first = decoder.timed(frame);
@@ -142,14 +101,27 @@ impl Decoder {
                 }
                 Ok(Ok((decoder, first)))
             }
-            Ok(None) | Err(_) => {
+            Err(Trouble::Silent(limit)) => {
+                decoder.end();
+                Ok(Err(vec![silent(limit)]))
+            }
+            Err(Trouble::Stopped) => {
+                decoder.end();
+                Ok(Err(vec!["interrupted before its first frame".to_owned()]))
+            }
+            Ok(None) | Err(Trouble::Broken) => {
                 decoder.end();
                 Ok(Err(decoder.log.last_lines()))
             }
         }
     }
 
-    fn spawn(program: &str, input: &VideoInput, no_resampling: &str) -> Result<Self, SequenceError> {
+    fn spawn(
+        program: &str,
+        input: &VideoInput,
+        no_resampling: &str,
+        patience: Patience,
+    ) -> Result<Self, SequenceError> {
         let failed =
             |source| SequenceError::FfmpegMissing { path: input.name(), program: program.to_owned(), source };
         let (options, name) = input.arguments();
@@ -168,7 +140,7 @@ impl Decoder {
         match (child.stdout.take(), child.stderr.take()) {
             (Some(stdout), Some(stderr)) => Ok(Self {
                 child: Stopper(Arc::new(Mutex::new(child))),
-                frames: Some(BufReader::new(stdout)),
+                frames: Some(Frames::follow(stdout, patience)),
                 log: LogReader::follow(stderr),
                 first_time: None,
                 last_time: None,
@@ -181,8 +153,8 @@ impl Decoder {
         self.child.clone()
     }
 
-    fn read(&mut self) -> io::Result<Option<Frame>> {
-        self.frames.as_mut().map_or(Ok(None), read_ppm)
+    fn read(&mut self) -> Result<Option<Frame>, Trouble> {
+        self.frames.as_mut().map_or(Ok(None), Frames::next)
     }
 
     /// The next frame after number `last_good`, or `None` at the video's proper end.
@@ -195,6 +167,10 @@ impl Decoder {
         if let Ok(Some(frame)) = read {
             return Ok(Some(self.timed(frame)));
         }
+        if matches!(read, Err(Trouble::Stopped)) {
+            self.end();
+            return Ok(None);
+        }
         let broken =
             |message: String| SequenceError::VideoBroken { path: path.to_owned(), last_good, message };
         let ended_well =
@@ -205,6 +181,9 @@ impl Decoder {
                 Some(reason) => Err(broken(reason)),
                 None => Ok(None),
             };
+        }
+        if let Err(Trouble::Silent(limit)) = read {
+            return Err(broken(silent(limit)));
         }
         let lines = self.log.last_lines();
         let message =
@@ -232,6 +211,10 @@ impl Drop for Decoder {
     fn drop(&mut self) {
         self.end();
     }
+}
+
+fn silent(limit: Duration) -> String {
+    format!("no frame came for {} seconds", limit.as_secs_f64())
 }
 
 fn bad_video(input: &VideoInput, lines: &[String]) -> SequenceError {

@@ -2,16 +2,19 @@
 
 use std::path::PathBuf;
 
-use super::{FrameSource, SequenceError, SourceFrame, range::FrameRange, size_guard::SizeGuard};
+use super::{FrameSource, SequenceError, SourceFrame, Wait, range::FrameRange, size_guard::SizeGuard};
 
 mod ffmpeg;
+mod input;
 mod live;
 mod log;
+mod pipe;
 mod ppm;
 
-pub(super) use ffmpeg::VideoInput;
 use ffmpeg::{Decoder, RawFrame};
+pub(super) use input::VideoInput;
 pub(super) use live::LiveVideo;
+use pipe::Patience;
 
 /// A video's frames, decoded one at a time by a child process that is ended when this is dropped.
 #[derive(Debug)]
@@ -29,13 +32,19 @@ pub(super) struct VideoFile {
 
 impl VideoFile {
     /// Starts the program that INFOPART_FFMPEG names, else `ffmpeg`, and decodes up to the range's first frame.
-    pub(super) fn open(input: VideoInput, range: FrameRange) -> Result<Self, SequenceError> {
+    pub(super) fn open(input: VideoInput, range: FrameRange, wait: Wait) -> Result<Self, SequenceError> {
         let program = std::env::var("INFOPART_FFMPEG").ok().filter(|name| !name.is_empty());
-        Self::open_with(program.as_deref().unwrap_or("ffmpeg"), &input, range)
+        let patience = Patience::with(&input, wait);
+        Self::open_with(program.as_deref().unwrap_or("ffmpeg"), &input, range, patience)
     }
 
-    fn open_with(program: &str, input: &VideoInput, range: FrameRange) -> Result<Self, SequenceError> {
-        let (decoder, first) = Decoder::start(program, input)?;
+    fn open_with(
+        program: &str,
+        input: &VideoInput,
+        range: FrameRange,
+        patience: Patience,
+    ) -> Result<Self, SequenceError> {
+        let (decoder, first) = Decoder::start(program, input, patience)?;
         let mut video = Self {
             path: input.name(),
             decoder,

@@ -31,7 +31,11 @@ fn frames_at(times: &[&str]) -> String {
 
 fn opened(script: &str, range: FrameRange) -> Result<VideoFile, SequenceError> {
     let (_folder, program) = stand_in(script);
-    VideoFile::open_with(&program, &some_file(), range)
+    VideoFile::open_with(&program, &some_file(), range, patient())
+}
+
+fn patient() -> Patience {
+    Patience::with(&some_file(), Wait::default())
 }
 
 fn some_file() -> VideoInput {
@@ -63,9 +67,10 @@ fn a_range_skips_and_stops_but_keeps_numbers_and_times() {
 
 #[test]
 fn a_missing_ffmpeg_says_how_to_install_it() {
-    let error = VideoFile::open_with("no-such-ffmpeg", &VideoInput::File(PathBuf::from("a.mp4")), ALL)
-        .unwrap_err()
-        .to_string();
+    let error =
+        VideoFile::open_with("no-such-ffmpeg", &VideoInput::File(PathBuf::from("a.mp4")), ALL, patient())
+            .unwrap_err()
+            .to_string();
     for part in
         ["a.mp4", "`no-such-ffmpeg`", "apt install ffmpeg", "brew install ffmpeg", "winget install ffmpeg"]
     {
@@ -114,7 +119,7 @@ fn a_frame_of_another_size_names_the_frame() {
 #[test]
 fn dropping_a_video_ends_its_process() {
     let (folder, program) = stand_in(&(frames_at(&["0"]) + "echo $$ > \"$0.pid\"; exec sleep 1000"));
-    let video = VideoFile::open_with(&program, &some_file(), ALL).unwrap();
+    let video = VideoFile::open_with(&program, &some_file(), ALL, patient()).unwrap();
     let pid_file = folder.path().join("ffmpeg.pid");
     let written = || fs::read_to_string(&pid_file).ok().filter(|text| text.ends_with('\n'));
     let pid = (0..2000).find_map(|_| {
@@ -151,7 +156,7 @@ fn no_name_is_an_option_or_a_protocol_unless_it_was_meant() {
     let script = "for word; do echo \"$word\" >> \"$0.args\"; done; exit 1";
     let arguments = |input: VideoInput| {
         let (folder, program) = stand_in(script);
-        let _ = VideoFile::open_with(&program, &input, ALL);
+        let _ = VideoFile::open_with(&program, &input, ALL, patient());
         fs::read_to_string(folder.path().join("ffmpeg.args")).unwrap()
     };
     for name in ["-y", "concat:a|b", "http://host/a.mp4", "pipe:0"] {
@@ -179,4 +184,36 @@ fn a_live_stream_gives_the_newest_frame_and_its_number() {
     assert_eq!(broken.next_frame().unwrap().unwrap().number, 1, "a frame is delivered before the error");
     assert!(broken.next_frame().unwrap_err().to_string().contains("broke off after frame 1"));
     assert!(broken.next_frame().unwrap().is_none());
+}
+
+#[test]
+fn a_silent_decoder_of_a_file_is_given_up_and_the_last_frame_named() {
+    let limit = Some(std::time::Duration::from_millis(400));
+    for before in [String::new(), frames_at(&["0", "1"])] {
+        // What is silent is a grandchild, which goes on holding the pipe.
+        let (_folder, program) = stand_in(&(before.clone() + "sleep 1000"));
+        let patience = Patience::limited(limit, Wait::default());
+        let message = match VideoFile::open_with(&program, &some_file(), ALL, patience) {
+            Err(error) => error.to_string(),
+            Ok(mut video) => {
+                assert!(video.next_frame().unwrap().is_some() && video.next_frame().unwrap().is_some());
+                video.next_frame().unwrap_err().to_string()
+            }
+        };
+        assert!(message.contains("no frame came for 0.4 seconds"), "{message}");
+        assert_eq!(message.contains("broke off after frame 2"), !before.is_empty(), "{message}");
+    }
+}
+
+#[test]
+fn a_silent_stream_is_waited_for_until_that_is_called_off() {
+    use std::sync::atomic::{AtomicBool, Ordering};
+    static STOP: AtomicBool = AtomicBool::new(false);
+    let (_folder, program) = stand_in(&(frames_at(&["0"]) + "exec sleep 1000"));
+    let patience = || Patience::limited(None, Wait { stop: Some(&STOP), tell: None });
+    let mut plain = VideoFile::open_with(&program, &some_file(), ALL, patience()).unwrap();
+    let mut live = VideoFile::open_with(&program, &some_file(), ALL, patience()).unwrap().live();
+    assert!(plain.next_frame().unwrap().is_some() && live.next_frame().unwrap().is_some());
+    STOP.store(true, Ordering::Relaxed);
+    assert!(plain.next_frame().unwrap().is_none() && live.next_frame().unwrap().is_none());
 }

@@ -1,4 +1,4 @@
-//! `infopart completions`: what shells and `man` know of the program.
+//! `PROGRAM completions`: what shells and `man` know of a program.
 
 use std::{
     fs,
@@ -6,22 +6,12 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use anyhow::Result;
-use clap::{Args, CommandFactory, ValueEnum};
+use clap::{Args, Command, ValueEnum};
 use clap_complete::Shell;
-use infopart::program::BadInput;
 
-use super::Cli;
+use super::BadInput;
 
-pub const EXAMPLES: &str = "\
-Examples:
-  infopart completions bash > ~/.local/share/bash-completion/completions/infopart
-  infopart completions zsh > ~/.zfunc/_infopart
-  infopart completions --out completions        a file for each shell
-  infopart completions --man man                man pages: infopart.1, infopart-track.1 and so on
-
-Exit codes: 0 success, 2 no such shell, or a file that cannot be written";
-
+/// The flags of the subcommand `completions`.
 #[derive(Debug, Args)]
 #[group(required = true, multiple = true)]
 pub struct CompletionsArgs {
@@ -35,18 +25,22 @@ pub struct CompletionsArgs {
     man: Option<PathBuf>,
 }
 
-pub fn completions(args: &CompletionsArgs) -> Result<()> {
-    let mut command = Cli::command();
+/// Does what the flags ask, for the program whose command line this is.
+///
+/// # Errors
+/// [`BadInput`] for a folder that cannot be written to.
+pub fn completions(mut command: Command, args: &CompletionsArgs) -> Result<(), BadInput> {
+    let name = command.get_name().to_owned();
     if let Some(shell) = args.shell {
         let mut text = Vec::new();
-        clap_complete::generate(shell, &mut command, "infopart", &mut text);
+        clap_complete::generate(shell, &mut command, &name, &mut text);
         // A reader that has seen enough is no failure.
         let _ = io::stdout().write_all(&text);
     }
     if let Some(folder) = &args.out {
         make(folder)?;
         for shell in Shell::value_variants() {
-            clap_complete::generate_to(*shell, &mut command, "infopart", folder)
+            clap_complete::generate_to(*shell, &mut command, &name, folder)
                 .map_err(|error| unwritten(folder, &error))?;
         }
     }
@@ -57,8 +51,22 @@ pub fn completions(args: &CompletionsArgs) -> Result<()> {
     Ok(())
 }
 
-fn make(folder: &Path) -> Result<()> {
-    fs::create_dir_all(folder).map_err(|error| unwritten(folder, &error).into())
+/// What the help of the subcommand shows.
+pub fn completions_examples(program: &str) -> String {
+    format!(
+        "\
+Examples:
+  {program} completions bash > ~/.local/share/bash-completion/completions/{program}
+  {program} completions zsh > ~/.zfunc/_{program}
+  {program} completions --out completions        a file for each shell
+  {program} completions --man man                man pages: {program}.1 and one for each command
+
+Exit codes: 0 success, 2 no such shell, or a file that cannot be written"
+    )
+}
+
+fn make(folder: &Path) -> Result<(), BadInput> {
+    fs::create_dir_all(folder).map_err(|error| unwritten(folder, &error))
 }
 
 fn unwritten(folder: &Path, error: &io::Error) -> BadInput {
