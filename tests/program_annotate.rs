@@ -201,6 +201,9 @@ fn bad_input_names_file_frame_or_flag_and_writes_nothing() {
     write_keys(&scene, &[("a", vec![key(1)]), ("b", vec![key(1)])]);
     scene.refuses(&["annotate", "img", "--keys", "keys.json", "--out", "b.txt"], &["otb", "--format csv"]);
     scene.refuses(&["annotate", "img", "--keys", "keys.json", "--format", "yolo"], &["yolo", "--out"]);
-    scene.refuses(&["annotate", "-", "--keys", "keys.json"], &["standard input"]);
+    scene.refuses(
+        &["annotate", "-", "--keys", "keys.json"],
+        &["-: a stream can be read only once", "record it first"],
+    );
     assert!(!scene.path("b.csv").exists() && !scene.path("b.csv.partial").exists());
 }
