@@ -33,6 +33,7 @@
 //! `images`. Without any feature the library is the trackers, the filters and the background model.
 #![deny(missing_docs)]
 
+pub mod annotate;
 pub mod background;
 pub mod bayes;
 pub mod boosting;

@@ -5,6 +5,7 @@ use std::{path::Path, process::ExitCode};
 use clap::{CommandFactory, Parser, Subcommand};
 use infopart::program;
 
+mod annotate;
 mod auto_init;
 mod background;
 mod config;
@@ -26,6 +27,7 @@ Examples:
   infopart track Crossing --out boxes.txt        an OTB folder
   infopart track video.mp4 --init 120,80,40,110  a video, the first box given
   infopart track video.mp4 --init auto           a static camera: what moves first is tracked
+  infopart annotate video.mp4 --keys keys.json --out boxes.csv   a box in every frame from a few that are drawn
   infopart config > my.toml                      parameters to edit
 
 Exit codes:
@@ -50,6 +52,9 @@ enum Command {
     /// Track a target from its box in the first frame
     #[command(after_help = track::EXAMPLES)]
     Track(Box<track_args::TrackArgs>),
+    /// Draw an object in a few frames of a video and get its box in every frame
+    #[command(after_help = annotate::EXAMPLES)]
+    Annotate(Box<annotate::AnnotateArgs>),
     /// Learn a static camera's background and show what moves: masks, blobs, a picture
     #[command(after_help = background::EXAMPLES)]
     Background(background::BackgroundArgs),
@@ -90,6 +95,7 @@ pub fn main() -> ExitCode {
     };
     let outcome = match cli.command {
         Command::Track(args) => track::track(&args),
+        Command::Annotate(args) => annotate::annotate(&args),
         Command::Demo(args) => demo::demo(&args),
         Command::Background(args) => background::background(&args),
         Command::Trax(args) => trax::trax(&args),
@@ -97,7 +103,9 @@ pub fn main() -> ExitCode {
         Command::Config(args) => config::config(&args),
         Command::Estimate(args) => estimate::estimate(&args),
     };
-    program::report_with(outcome, |error| error.is::<several::Interrupted>().then_some(program::INTERRUPTED))
+    let is_interrupted =
+        |error: &anyhow::Error| error.is::<several::Interrupted>() || error.is::<annotate::Interrupted>();
+    program::report_with(outcome, |error| is_interrupted(error).then_some(program::INTERRUPTED))
 }
 
 #[cfg(test)]
