@@ -25,10 +25,10 @@ def run(program, words):
         fail(f"{program} failed with exit code {done.returncode}: {done.stderr.strip()}")
 
 
-def their_tracks(detections, out):
-    """Writes roboflow's tracks; gives the seconds in its tracker."""
+def their_tracks(tracker, detections, out):
+    """Writes the tracks of one of roboflow's trackers; gives the seconds in it."""
     rows = np.loadtxt(detections, delimiter=",", ndmin=2)
-    tracker, seconds, lines = ByteTrackTracker(), 0.0, []
+    seconds, lines = 0.0, []
     for frame in range(1, int(rows[:, 0].max()) + 1):
         seen = rows[rows[:, 0] == frame]
         corners = np.hstack([seen[:, 2:4], seen[:, 2:4] + seen[:, 4:6]])
@@ -61,7 +61,7 @@ def main():
                 ["mot sort", "mot sort --max-age 30", "mot sort --method byte", "roboflow ByteTrack"])}
             for name, out in list(outs.items())[:3]:
                 run(options.mot, [*name.split()[1:], detections, "--out", out])
-            their_tracks(detections, outs["roboflow ByteTrack"])
+            their_tracks(ByteTrackTracker(), detections, outs["roboflow ByteTrack"])
             for name, out in outs.items():
                 scored = out.with_suffix(".json")
                 run(options.mot, ["score", truth, out, "--rules", "trackeval", "--json", scored])

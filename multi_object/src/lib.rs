@@ -9,6 +9,7 @@
 
 pub mod appearance;
 pub mod assignment;
+pub mod camera_motion;
 pub mod comparison;
 pub mod drawing;
 pub mod grid;

@@ -79,6 +79,17 @@ fn an_empty_result_is_scored_as_nothing_found_with_a_warning() {
 }
 
 #[test]
+fn a_result_is_read_from_standard_input_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let truth = file(folder.path(), "gt.txt", "1,1,10,10,5,9,-1\n");
+    let mut program = assert_cmd::Command::cargo_bin("mot").unwrap();
+    let done = program.args(["score", &truth, "-"]).write_stdin("1,4,10,10,5,9,1\n").output().unwrap();
+    let table = String::from_utf8(done.stdout).unwrap();
+    assert!(done.status.success() && table.contains("100.0%"), "{table}");
+    assert_refused(&["score", &truth, "-", &truth, "-"], &["- twice"]);
+}
+
+#[test]
 fn flags_out_of_range_are_named() {
     let folder = tempfile::tempdir().unwrap();
     let detections = file(folder.path(), "det.txt", "1,-1,10,10,5,9,0.9\n");
@@ -97,17 +108,47 @@ fn folders_of_sequences_are_scored_by_name_and_a_missing_result_is_told() {
     fs::create_dir(folder.path().join("results")).unwrap();
     file(folder.path(), "results/A.txt", "1,1,10,10,5,9,1\n");
     let path = |name: &str| folder.path().join(name).display().to_string();
-    assert_refused(
-        &["score", &path("train"), &path("results")],
-        &["no B.txt", "give a result for each sequence"],
-    );
+    // B is missing: A is scored all the same.
+    let names_in = |table: &str| -> Vec<String> {
+        let first = |line: &str| line.split_whitespace().next().map(str::to_owned);
+        table.lines().skip(1).filter_map(first).collect()
+    };
+    let damaged = [None, Some("1,1,90,90,5\n"), Some("1,1,90,90,-5,9,1\n"), Some("\u{0}\u{1}")];
+    for rows in damaged {
+        if let Some(rows) = rows {
+            file(folder.path(), "results/B.txt", rows);
+        }
+        let (code, table, complaints) = common::mot(&["score", &path("train"), &path("results")]);
+        assert_eq!((code, names_in(&table)), (2, vec!["A".to_owned()]), "{complaints}");
+        assert!(complaints.contains("B.txt") && complaints.contains("1 of 2 sequences"), "{complaints}");
+    }
+    // A map may name what is not there, and leave out what is damaged.
+    for (map, code, names) in [("name\nA\n", 0, vec!["A"]), ("name\nA\nC\n", 2, vec!["A"])] {
+        let map = file(folder.path(), "map.txt", map);
+        let words = ["score", &path("train"), &path("results"), "--sequence-map", &map];
+        let (given, table, complaints) = common::mot(&words);
+        assert_eq!((given, names_in(&table)), (code, names.iter().map(|&name| name.to_owned()).collect()));
+        assert_eq!(complaints.contains("C/gt/gt.txt"), code == 2, "{complaints}");
+    }
     file(folder.path(), "results/B.txt", "1,1,90,90,5,9,1\n");
+    // No row of A may be beyond its two frames; of B nothing is known.
+    file(folder.path(), "train/A/seqinfo.ini", "[Sequence]\nname=A\nseqLength=2\n");
+    file(folder.path(), "results/A.txt", "1,1,10,10,5,9,1\n3,1,10,10,5,9,1\n");
+    let (code, table, complaints) = common::mot(&["score", &path("train"), &path("results")]);
+    assert_eq!((code, names_in(&table)), (2, vec!["B".to_owned()]));
+    assert!(complaints.contains("A.txt, line 2: frame 3 is beyond the 2 frames"), "{complaints}");
+    // One false positive in two frames.
+    file(folder.path(), "results/A.txt", "1,1,90,90,5,9,1\n");
+    let (_, table, _) = common::mot(&["score", &path("train"), &path("results"), "--rules", "trackeval"]);
+    let rate = |line: &str| line.split_whitespace().rev().nth(3).map(str::to_owned);
+    let rates: Vec<_> = table.lines().skip(1).filter_map(rate).collect();
+    assert_eq!(rates, ["0.500", "1.000", "0.667"], "{table}");
+    file(folder.path(), "results/A.txt", "1,1,10,10,5,9,1\n");
     let json = path("scores.json");
     let (code, table, complaints) =
         common::mot(&["score", &path("train"), &path("results"), "--json", &json]);
     assert_eq!(code, 0, "{complaints}");
-    let names: Vec<&str> = table.lines().skip(1).filter_map(|line| line.split_whitespace().next()).collect();
-    assert_eq!(names, ["A", "B", "OVERALL"]);
+    assert_eq!(names_in(&table), ["A", "B", "OVERALL"]);
     let scores: serde_json::Value = serde_json::from_str(&fs::read_to_string(json).unwrap()).unwrap();
     assert_eq!(scores["sequences"][2]["scores"]["mota"], 0.0);
     assert_eq!(scores["sequences"][0]["scores"]["mota"], 1.0);

@@ -48,7 +48,7 @@ fn two_walkers_are_two_tracks_with_every_filter_and_model() {
         let (code, _, complaints) = common::mot(&words);
         assert_eq!(code, 0, "{complaints}");
         let mut by_identity: BTreeMap<u64, Vec<TrackRow>> = BTreeMap::new();
-        for row in read_tracks(Path::new(&out)).unwrap() {
+        for row in read_tracks(Path::new(&out), None).unwrap() {
             by_identity.entry(row.identity).or_default().push(row);
         }
         assert_eq!(by_identity.len(), 2, "{filter}, {motion}");

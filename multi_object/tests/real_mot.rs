@@ -55,7 +55,7 @@ const TRACKEVAL_COMBINED: [(&str, [f64; 5]); 2] = [
 
 fn counts(mot: &Path, name: &str, result: &str) -> Counts {
     let truth = read_ground_truth(&mot.join(name).join("gt/gt.txt")).unwrap();
-    let result = read_tracks(&mot.join(name).join(result).join("result.txt")).unwrap();
+    let result = read_tracks(&mot.join(name).join(result).join("result.txt"), None).unwrap();
     Counts::of(&truth, &result, Rules::Trackeval)
 }
 
@@ -99,8 +99,8 @@ fn sort_gives_the_tracks_and_scores_of_the_reference() {
         let detections = mot.join(name).join("det/det.txt").display().to_string();
         let (code, _, complaints) = common::mot(&["sort", &detections, "--out", &out(name)]);
         assert_eq!(code, 0, "{complaints}");
-        let ours = read_tracks(Path::new(&out(name))).unwrap();
-        let theirs = read_tracks(&mot.join(name).join("sort/result.txt")).unwrap();
+        let ours = read_tracks(Path::new(&out(name)), None).unwrap();
+        let theirs = read_tracks(&mot.join(name).join("sort/result.txt"), None).unwrap();
         assert_eq!(ours.len(), theirs.len(), "{name}");
         let theirs_by_frame = by_frame(&theirs);
         // Each of our identities is one of theirs, always the same, and no two of ours are the same of theirs.

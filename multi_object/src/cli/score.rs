@@ -6,7 +6,7 @@ use anyhow::Result;
 use clap::{Args, ValueEnum};
 use infopart::{output::TextTable, program::BadInput};
 use multi_object::{
-    motchallenge::{MotError, read_annotations, read_tracks, sequence_name},
+    motchallenge::{MotError, read_annotations, read_tracks, sequence_length, sequence_name},
     scoring::{Benchmark, Counts, Rules, Scores},
 };
 
@@ -20,8 +20,9 @@ Examples:
   mot sort det.txt | mot score mot/A/gt/gt.txt -
 
 GT and RESULT are files of MOTChallenge text, - for standard input, or two folders: GT/SEQ/gt/gt.txt goes with RESULT/SEQ.txt. \
-Rows stand in any order. Ground truth counts where its confidence (seventh field) is not 0; a match needs an overlap of 0.5. A \
-sequence that cannot be scored is told and left out; the exit code is then 2.
+Rows stand in any order, and none beyond the seqLength of GT/SEQ/seqinfo.ini, if there is one. Ground truth counts where its \
+confidence (seventh field) is not 0; a match needs an overlap of 0.5. A sequence that cannot be scored, as its result is \
+missing or damaged, is told and left out; the exit code is then 2.
 Columns: IDF1 IDP IDR, recall, precision, GT objects, mostly / partly tracked, mostly lost, false positives, misses, \
 identity switches, fragments, MOTA, MOTP (mean of 1 - overlap), transfers, ascents, migrations, MOTPo (mean overlap), \
 FAR (false positives a frame), HOTA, DetA, AssA.";
@@ -100,10 +101,12 @@ pub fn score(args: &ScoreArgs) -> Result<()> {
     if let Some(total) = Counts::total(counts.iter().map(|(_, counts)| counts)).filter(|_| counts.len() > 1) {
         scores.push((OVERALL.to_owned(), total.scores()));
     }
-    if let Some(path) = &args.json {
+    if let Some(path) = args.json.as_ref().filter(|_| !scores.is_empty()) {
         deliver(Some(path), &format!("{}\n", json(rules, &scores)?))?;
     }
-    deliver(None, &table(&scores))?;
+    if !scores.is_empty() {
+        deliver(None, &table(&scores))?;
+    }
     if bad > 0 {
         let message =
             format!("{bad} of {total} sequences could not be scored and are not in the table; see above");
@@ -113,15 +116,26 @@ pub fn score(args: &ScoreArgs) -> Result<()> {
 }
 
 impl Pair {
+    /// GT/SEQ/gt/gt.txt and RESULT/SEQ.txt.
+    fn in_folders(truth: &Path, result: &Path, name: String) -> Self {
+        let (truth, result) = (truth.join(&name).join("gt/gt.txt"), result.join(format!("{name}.txt")));
+        Self { name, truth, result }
+    }
+
     fn counts(&self, benchmark: Benchmark, rules: Rules) -> Result<Counts, MotError> {
-        let truth = read_annotations(&self.truth)?;
-        let result = read_tracks(&self.result)?;
+        let length = sequence_length(&self.truth)?;
+        let truth = read_annotations(&self.truth, length)?;
+        let result = read_tracks(&self.result, length)?;
         if result.is_empty() {
             let path = self.result.display();
             eprintln!("warning: {path}: no row in it: scored as a tracker that found nothing");
         }
         let (truth, result) = benchmark.counted(&truth, &result);
-        Ok(Counts::of(&truth, &result, rules))
+        let counts = Counts::of(&truth, &result, rules);
+        Ok(match length {
+            Some(length) => counts.of_length(length),
+            None => counts,
+        })
     }
 }
 
@@ -144,13 +158,12 @@ fn pairs(args: &ScoreArgs) -> Result<Vec<Pair>> {
         let mut pairs = folders(truth, result)?;
         if let Some(path) = &args.sequence_map {
             let names = sequence_map(path)?;
-            if let Some(missing) = names.iter().find(|name| pairs.iter().all(|pair| pair.name != **name)) {
-                let what = format!("no {missing}/gt/gt.txt in it, which {} names", path.display());
-                return Err(MotError::Sequences { path: truth.clone(), what }.into());
-            }
             pairs.retain(|pair| names.contains(&pair.name));
+            // Those that are not there are told when they are to be read.
+            let is_known = |name: &String| pairs.iter().any(|pair| pair.name == *name);
+            let missing: Vec<String> = names.into_iter().filter(|name| !is_known(name)).collect();
+            pairs.extend(missing.into_iter().map(|name| Pair::in_folders(truth, result, name)));
         }
-        complain_of_missing(result, &pairs)?;
         return Ok(pairs);
     }
     if args.sequence_map.is_some() {
@@ -180,9 +193,9 @@ fn folders(truth: &Path, result: &Path) -> Result<Vec<Pair>> {
     for entry in std::fs::read_dir(truth).map_err(unreadable)? {
         let entry = entry.map_err(unreadable)?;
         let name = entry.file_name().to_string_lossy().into_owned();
-        let file = entry.path().join("gt/gt.txt");
-        if file.is_file() {
-            pairs.push(Pair { result: result.join(format!("{name}.txt")), name, truth: file });
+        let pair = Pair::in_folders(truth, result, name);
+        if pair.truth.is_file() {
+            pairs.push(pair);
         }
     }
     pairs.sort_by(|a, b| a.name.cmp(&b.name));
@@ -191,18 +204,6 @@ fn folders(truth: &Path, result: &Path) -> Result<Vec<Pair>> {
         return Err(MotError::Sequences { path: truth.to_owned(), what }.into());
     }
     Ok(pairs)
-}
-
-/// A result for each sequence there must be.
-fn complain_of_missing(result: &Path, pairs: &[Pair]) -> Result<()> {
-    let missing: Vec<String> =
-        pairs.iter().filter(|pair| !pair.result.is_file()).map(|pair| format!("{}.txt", pair.name)).collect();
-    if !missing.is_empty() {
-        let what =
-            format!("no {}; give a result for each sequence, or GT RESULT by file", missing.join(", "));
-        return Err(MotError::Sequences { path: result.to_owned(), what }.into());
-    }
-    Ok(())
 }
 
 /// The names in a MOTChallenge sequence map: one a line after the heading `name`.

@@ -115,6 +115,14 @@ pub enum RowProblem {
         /// The line of the first.
         first_line: usize,
     },
+    /// A frame that the sequence does not have.
+    #[error("frame {frame} is beyond the {length} frames that seqinfo.ini gives; correct one of the two")]
+    Beyond {
+        /// The frame.
+        frame: u32,
+        /// Frames of the sequence.
+        length: u32,
+    },
     /// A frame number that goes back.
     #[error("frame {frame} comes after frame {previous}; put the rows in order: sort -s -t, -n -k1,1 FILE")]
     OutOfOrder {

@@ -6,11 +6,13 @@ use infopart::geometry::Rect;
 
 mod error;
 mod read;
+mod sequence_info;
 #[cfg(test)]
 mod tests;
 
 pub use error::{MotError, RowProblem};
 pub use read::{read_annotations, read_detections, read_ground_truth, read_tracks};
+pub use sequence_info::sequence_length;
 
 /// Where one object is in one frame.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -16,17 +16,17 @@ const MAX_PIXEL: f64 = 1e7;
 /// # Errors
 /// [`MotError`] if the file cannot be read, a row cannot be used, or no row counts.
 pub fn read_ground_truth(path: &Path) -> Result<Vec<TrackRow>, MotError> {
-    let annotations = read_annotations(path)?;
+    let annotations = read_annotations(path, None)?;
     Ok(annotations.iter().filter(|one| one.is_counted()).map(|one| one.row).collect())
 }
 
 /// Reads every row of ground truth, with its class if it has one. Rows stand in any order. Boxes of rows that do not count may
-/// be anything.
+/// be anything. No row may be of a frame beyond `length`, if that is known.
 ///
 /// # Errors
 /// [`MotError`] if the file cannot be read, a row cannot be used, or no row counts.
-pub fn read_annotations(path: &Path) -> Result<Vec<Annotation>, MotError> {
-    let annotations = parse_annotations(&text_of(path)?, path)?;
+pub fn read_annotations(path: &Path, length: Option<u32>) -> Result<Vec<Annotation>, MotError> {
+    let annotations = parse_annotations(&text_of(path)?, path, length)?;
     if !annotations.iter().any(Annotation::is_counted) {
         let what = "no row with confidence 1 (the seventh field), so nothing to find; give ground truth";
         return Err(MotError::Empty { path: path.to_owned(), what });
@@ -35,12 +35,12 @@ pub fn read_annotations(path: &Path) -> Result<Vec<Annotation>, MotError> {
 }
 
 /// Reads tracks, such as a tracker's result; the confidence may be missing and filters nothing. Nothing in the file is
-/// a tracker that found nothing.
+/// a tracker that found nothing. No row may be of a frame beyond `length`, if that is known.
 ///
 /// # Errors
 /// [`MotError`] if the file cannot be read or a row cannot be used.
-pub fn read_tracks(path: &Path) -> Result<Vec<TrackRow>, MotError> {
-    parse_tracks(&text_of(path)?, path)
+pub fn read_tracks(path: &Path, length: Option<u32>) -> Result<Vec<TrackRow>, MotError> {
+    parse_tracks(&text_of(path)?, path, length)
 }
 
 /// Reads detections; the identity is not looked at. Rows must be in the order of their frames.
@@ -90,11 +90,12 @@ fn rows_of(text: &str) -> impl Iterator<Item = (usize, Vec<&str>)> {
     })
 }
 
-pub(super) fn parse_tracks(text: &str, path: &Path) -> Result<Vec<TrackRow>, MotError> {
+pub(super) fn parse_tracks(text: &str, path: &Path, length: Option<u32>) -> Result<Vec<TrackRow>, MotError> {
     let mut lines = Lines::default();
     (rows_of(text).map(|(line, fields)| {
         let row = |problem| MotError::Row { path: path.to_owned(), line, problem };
         let (frame, identity) = (frame_of(&fields).map_err(row)?, identity_of(&fields).map_err(row)?);
+        within(frame, length).map_err(row)?;
         let confidence = confidence_of(&fields).map_err(row)?.unwrap_or(1.0);
         let box_in_file = box_of(&fields).map_err(row)?;
         lines.add(frame, identity, line).map_err(row)?;
@@ -103,12 +104,17 @@ pub(super) fn parse_tracks(text: &str, path: &Path) -> Result<Vec<TrackRow>, Mot
     .collect()
 }
 
-pub(super) fn parse_annotations(text: &str, path: &Path) -> Result<Vec<Annotation>, MotError> {
+pub(super) fn parse_annotations(
+    text: &str,
+    path: &Path,
+    length: Option<u32>,
+) -> Result<Vec<Annotation>, MotError> {
     let mut lines = Lines::default();
     let mut annotations = Vec::new();
     for (line, fields) in rows_of(text) {
         let row = |problem| MotError::Row { path: path.to_owned(), line, problem };
         let (frame, identity) = (frame_of(&fields).map_err(row)?, identity_of(&fields).map_err(row)?);
+        within(frame, length).map_err(row)?;
         let needed = 7;
         let confidence = confidence_of(&fields).map_err(row)?;
         let confidence =
@@ -159,6 +165,13 @@ fn frame_of(fields: &[&str]) -> Result<u32, RowProblem> {
         return Err(RowProblem::Frame { text: fields[0].to_owned() });
     }
     Ok(value as u32)
+}
+
+fn within(frame: u32, length: Option<u32>) -> Result<(), RowProblem> {
+    match length.filter(|&length| frame > length) {
+        Some(length) => Err(RowProblem::Beyond { frame, length }),
+        None => Ok(()),
+    }
 }
 
 fn identity_of(fields: &[&str]) -> Result<u64, RowProblem> {

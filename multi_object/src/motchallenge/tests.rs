@@ -11,7 +11,7 @@ use super::{
 };
 
 fn result(text: &str) -> Result<Vec<TrackRow>, MotError> {
-    parse_tracks(text, Path::new("r.txt"))
+    parse_tracks(text, Path::new("r.txt"), None)
 }
 
 fn refused(text: &str) -> (usize, RowProblem) {
@@ -39,7 +39,7 @@ fn rows_are_cut_at_commas_or_blanks_and_lines_count_blank_ones() {
 #[test]
 fn only_ground_truth_is_filtered_and_needs_the_confidence() {
     let text = "1,1,0,0,9,9,1\n1,2,0,0,9,9,0\n1,2,0,0,-9,9,0\n";
-    let truth = |text| parse_annotations(text, Path::new("gt.txt"));
+    let truth = |text| parse_annotations(text, Path::new("gt.txt"), None);
     let counted = |text| truth(text).unwrap().iter().filter(|one| one.is_counted()).count();
     assert_eq!(counted(text), 1);
     // None given counts; the class is the eighth field.
@@ -62,6 +62,18 @@ fn odd_rows_are_refused_with_their_line() {
     assert_eq!(refused("1,1,0,0,-9,9"), (1, RowProblem::Size { width: -9.0, height: 9.0 }));
     let twice = RowProblem::DuplicateIdentity { identity: 4, frame: 1, first_line: 1 };
     assert_eq!(refused("1,4,0,0,9,9\n1,4,5,5,9,9"), (2, twice));
+}
+
+#[test]
+fn frames_beyond_the_sequence_are_refused() {
+    let text = "1,1,0,0,9,9,1\n4,1,0,0,9,9,1\n";
+    let beyond = |length| match parse_tracks(text, Path::new("r.txt"), Some(length)) {
+        Err(MotError::Row { line, problem, .. }) => Some((line, problem)),
+        _ => None,
+    };
+    assert_eq!((beyond(4), beyond(3)), (None, Some((2, RowProblem::Beyond { frame: 4, length: 3 }))));
+    let truth = parse_annotations(text, Path::new("gt.txt"), Some(3)).unwrap_err().to_string();
+    assert!(truth.contains("gt.txt, line 2: frame 4 is beyond the 3 frames"), "{truth}");
 }
 
 #[test]

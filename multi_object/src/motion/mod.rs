@@ -10,7 +10,7 @@ use infopart::bayes::{
     particle::{ParticleFilter, ParticleFilterOptions},
     unscented::{MeasuredPoints, SigmaPoints, UnscentedKalmanFilter},
 };
-use nalgebra::Cholesky;
+use nalgebra::{Cholesky, SMatrix};
 use rand_chacha::{ChaCha8Rng, rand_core::SeedableRng};
 
 mod models;
@@ -87,13 +87,13 @@ impl FilterOptions {
 }
 
 /// A filter at work on one track.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct StateFilter<D, const N: usize, const M: usize> {
     model: D,
     engine: Engine<N, M>,
 }
 
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 enum Engine<const N: usize, const M: usize> {
     Kalman(Box<KalmanFilter<N, M>>),
     Extended(ExtendedKalmanFilter<N>),
@@ -101,7 +101,7 @@ enum Engine<const N: usize, const M: usize> {
     Particle(Box<Particles<N>>),
 }
 
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct Particles<const N: usize> {
     filter: ParticleFilter<N>,
     rng: ChaCha8Rng,
@@ -187,6 +187,21 @@ impl<D: MotionModel<N, M>, const N: usize, const M: usize> StateFilter<D, N, M> 
         }
     }
 
+    /// Moves what is believed to `matrix` x + `shift`, as where the coordinates themselves have moved. Particles are drawn anew
+    /// from the belief. A belief that would not be one stays as it was.
+    pub fn map_belief(&mut self, matrix: &SMatrix<f64, N, N>, shift: &State<N>) {
+        let Gaussian { mean, covariance } = *self.belief();
+        let Ok(moved) = Gaussian::new(matrix * mean + shift, matrix * covariance * matrix.transpose()) else {
+            return;
+        };
+        match &mut self.engine {
+            Engine::Kalman(filter) => filter.set_belief(moved),
+            Engine::Extended(filter) => filter.set_belief(moved),
+            Engine::Unscented(filter) => filter.set_belief(moved),
+            Engine::Particle(particles) => particles.draw_anew(moved),
+        }
+    }
+
     /// How far a measurement is from its prediction: residual' S^-1 residual + ln |S|, with S = H P H' + R. Infinite where
     /// S is singular or a number is not finite.
     pub fn assignment_cost(&self, measured: &State<M>) -> f64 {
@@ -205,14 +220,14 @@ impl<D: MotionModel<N, M>, const N: usize, const M: usize> StateFilter<D, N, M> 
 impl<const N: usize> Particles<N> {
     fn new(belief: Gaussian<N>, options: FilterOptions) -> Result<Self, FilterError> {
         let mut rng = ChaCha8Rng::seed_from_u64(options.seed);
-        let spread = GaussianNoise::new(belief.covariance)?;
-        let states = (0..options.particles).map(|_| belief.mean + spread.sample(&mut rng)).collect();
-        let options = ParticleFilterOptions {
-            regularisation: Some(Kernel::Gaussian),
-            ..ParticleFilterOptions::default()
-        };
-        let filter = ParticleFilter::try_new(states, options)?.on_one_thread();
+        let filter = drawn(options.particles, &belief, &mut rng)?;
         Ok(Self { filter, rng, belief })
+    }
+
+    fn draw_anew(&mut self, belief: Gaussian<N>) {
+        if let Ok(filter) = drawn(self.filter.states().len(), &belief, &mut self.rng) {
+            (self.filter, self.belief) = (filter, belief);
+        }
     }
 
     /// The particles' mean and covariance.
@@ -226,4 +241,17 @@ impl<const N: usize> Particles<N> {
         }
         self.belief = Gaussian { mean, covariance };
     }
+}
+
+/// Particles drawn from a belief.
+fn drawn<const N: usize>(
+    particles: usize,
+    belief: &Gaussian<N>,
+    rng: &mut ChaCha8Rng,
+) -> Result<ParticleFilter<N>, FilterError> {
+    let spread = GaussianNoise::new(belief.covariance)?;
+    let states = (0..particles).map(|_| belief.mean + spread.sample(rng)).collect();
+    let options =
+        ParticleFilterOptions { regularisation: Some(Kernel::Gaussian), ..ParticleFilterOptions::default() };
+    Ok(ParticleFilter::try_new(states, options)?.on_one_thread())
 }

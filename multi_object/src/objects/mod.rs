@@ -5,7 +5,8 @@
 //! 2. Predict every track.
 //! 3. Cells go to the tracks whose predicted boxes they are near (`claims`); a track parts with what is another object (`track`).
 //! 4. A track that has its region alone is where its cells are, and its size follows theirs slowly. One that shares it, or
-//!    seems to have another size for once, keeps its size and is where it fits best (`fit`).
+//!    seems to have another size for once, or whose region goes on beyond its reach, as where others whom no track has come near,
+//!    keeps its size and is where it fits best (`fit`).
 //! 5. Pieces that are left, near each other, are objects. A track that was not seen takes the one that costs least, by place,
 //!    size and colours, within a gate in sides of its box.
 //! 6. Delete tracks that were not seen for `max_age` frames (those never established: a few), that left the picture, or that
@@ -34,7 +35,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use image::GrayImage;
 use infopart::{background::Learning, frame::FrameView, geometry::Rect};
@@ -44,7 +45,7 @@ use crate::{
     assignment::Assigner,
     grid::Grid,
     motion::CentreModel,
-    tracking::{SceneWarning, TrackState, WarningWatch},
+    tracking::{PredictionClock, SceneWarning, TrackState, WarningWatch},
 };
 
 mod claims;
@@ -80,6 +81,8 @@ const FEW: u32 = 10;
 const ODD_FOR: u32 = 8;
 /// Frames in a row after which a track takes all of a region that it has alone, if that is larger by this.
 const OUTGROWN: (u32, f64) = (5, 1.5);
+/// Share of its usual cells by which a region that a track has alone may go on beyond its claim, for the claim to be its outline.
+const CUT: f64 = 0.2;
 /// Share of its usual cells that a track must have for a sight.
 const FEWEST: f64 = 0.3;
 /// Share of its usual foreground that the box of a track must hold where it shares a region.
@@ -115,8 +118,7 @@ pub struct ObjectTracker<D, const N: usize> {
     detections: Vec<Rect>,
     assigner: Assigner,
     watch: WarningWatch,
-    predictions: u64,
-    prediction_time: Duration,
+    clock: PredictionClock,
 }
 
 /// An object that no track claims.
@@ -139,8 +141,7 @@ impl<D: CentreModel<N>, const N: usize> ObjectTracker<D, N> {
             detections: Vec::new(),
             assigner: Assigner::default(),
             watch: WarningWatch::default(),
-            predictions: 0,
-            prediction_time: Duration::ZERO,
+            clock: PredictionClock::default(),
         }
     }
 
@@ -197,16 +198,12 @@ impl<D: CentreModel<N>, const N: usize> ObjectTracker<D, N> {
 
     /// Mean time of predicting one track by one frame; `None` before the first.
     pub fn mean_prediction_time(&self) -> Option<Duration> {
-        (self.predictions > 0).then(|| self.prediction_time.div_f64(self.predictions as f64))
+        self.clock.mean()
     }
 
     /// Step 2.
     fn predict(&mut self) {
-        let start = Instant::now();
-        self.predictions += self.tracks.len() as u64;
-        // A filter that broke can predict nothing more.
-        self.tracks.retain_mut(|track| track.filter.predict().is_ok());
-        self.prediction_time += start.elapsed();
+        self.clock.predict(&mut self.tracks, |track| track.filter.predict());
         for track in &mut self.tracks {
             track.predicted = Some(track.tracked_box());
             track.detected = None;
@@ -407,7 +404,11 @@ impl Sight<'_> {
         let is_outgrown = claim.region_cells as f64 > OUTGROWN.1 * track.usual_cells;
         track.outgrown = if is_outgrown { track.outgrown + 1 } else { 0 };
         let cells = count(&claim.segments) as f64;
-        let area = extent(&claim.segments, STRAY).filter(|_| !claim.is_shared);
+        // Where its region goes on beyond the claim, the claim's edge is none of the object's.
+        let is_cut = track.sights > FEW
+            && !self.claimer.takes_all
+            && claim.region_cells as f64 > cells + CUT * track.usual_cells;
+        let area = extent(&claim.segments, STRAY).filter(|_| !claim.is_shared && !is_cut);
         let whole =
             area.filter(|area| cells >= FEWEST * track.usual_cells && self.is_believed(area, track, claim));
         if let Some(area) = whole {

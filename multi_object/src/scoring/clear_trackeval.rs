@@ -24,7 +24,7 @@ pub(super) fn count(timeline: &Timeline) -> Counts {
     let mut objects: Vec<Object> = (timeline.frames_of_truth.iter())
         .map(|_| Object { last_track: None, track_before: None, matched: 0, pieces: 0 })
         .collect();
-    // The toolkit is told a length; here it is the last frame with a box.
+    // Where no length is known (`Counts::of_length`) it is the last frame with a box.
     let frames = timeline.frames.last().map_or(0, |last| last.frame as usize);
     let mut counts = Counts { frames, ..Counts::default() };
     let mut assigner = Assigner::default();

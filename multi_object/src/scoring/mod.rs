@@ -74,6 +74,15 @@ impl Counts {
         }
     }
 
+    /// The same of a sequence that has so many frames, whether there is a box in the last or not; TrackEval is told a length,
+    /// py-motmetrics's rules count the frames that have a box.
+    pub fn of_length(self, frames: u32) -> Self {
+        match self.rules {
+            Rules::Motmetrics => self,
+            Rules::Trackeval => Self { frames: frames as usize, ..self },
+        }
+    }
+
     /// Adds another sequence's counts.
     pub fn add(&mut self, other: &Self) {
         self.frames += other.frames;

@@ -54,7 +54,8 @@ pub struct Scores {
     pub deta: Option<f64>,
     /// Association accuracy, the mean over 19 thresholds.
     pub assa: Option<f64>,
-    /// Frames: under py-motmetrics's rules those that have a box, under TrackEval's the number of the last.
+    /// Frames: under py-motmetrics's rules those that have a box, under TrackEval's the sequence's
+    /// length, or the number of the last that has one.
     pub frames: usize,
     /// Boxes of the ground truth.
     pub truth_boxes: usize,

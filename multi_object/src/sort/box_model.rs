@@ -12,7 +12,8 @@ use infopart::{
 };
 use nalgebra::SMatrix;
 
-use crate::motion::MotionModel;
+use super::BoxFilter;
+use crate::{camera_motion::CameraMotion, motion::MotionModel};
 
 /// Components of the state.
 pub(super) const STATE: usize = 7;
@@ -133,6 +134,21 @@ impl MotionModel<STATE, MEASURED> for BoxModel {
 pub(super) fn measured(detection: &Rect) -> State<MEASURED> {
     let (u, v) = detection.centre();
     State::from([u, v, detection.area(), detection.w / detection.h])
+}
+
+/// Moves what a filter believes as the camera moved the picture: the centre as a point, its velocity as a direction, the area with
+/// the scale.
+pub(super) fn move_camera(filter: &mut BoxFilter, motion: &CameraMotion) {
+    let CameraMotion { linear, shift } = *motion;
+    let scale = motion.area_scale();
+    let mut matrix = SMatrix::<f64, STATE, STATE>::identity();
+    for (row, column) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+        matrix[(row, column)] = linear[row][column];
+        matrix[(row + 4, column + 4)] = linear[row][column];
+    }
+    (matrix[(2, 2)], matrix[(6, 6)]) = (scale, scale);
+    let shift = State::from([shift[0], shift[1], 0.0, 0.0, 0.0, 0.0, 0.0]);
+    filter.map_belief(&matrix, &shift);
 }
 
 /// The box of a state, if it is one.

@@ -15,13 +15,13 @@
 //!
 //! ```
 //! use infopart::geometry::Rect;
-//! use multi_object::sort::{ByteParameters, ByteTracker, ScoredBox};
+//! use multi_object::sort::{BoxTracker, ByteParameters, ByteTracker, ScoredBox};
 //!
 //! // Any detector's boxes, frame by frame; in the fourth it is not sure.
 //! let mut tracker = ByteTracker::new(ByteParameters::default());
 //! for (frame, confidence) in [0.9, 0.9, 0.9, 0.2, 0.9].into_iter().enumerate() {
 //!     let area = Rect::new(10.0 + 3.0 * frame as f64, 20.0, 30.0, 60.0);
-//!     let reported = tracker.update(&[ScoredBox { area, confidence, class: Some(1) }])?;
+//!     let reported = tracker.track(&[ScoredBox { area, confidence, class: Some(1) }])?;
 //!     assert_eq!((reported.len(), reported[0].identity, reported[0].class), (1, 1, Some(1)));
 //! }
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -30,36 +30,15 @@
 use infopart::{bayes::FilterError, geometry::Rect};
 
 use super::{
-    BoxNoise,
+    BoxFilter, BoxNoise, BoxTracker, ReportedBox, ScoredBox,
     box_model::{self, BoxModel},
 };
 use crate::{
     assignment::Assigner,
+    camera_motion::CameraMotion,
     grid::Grid,
     motion::{FilterKind, FilterOptions, StateFilter},
 };
-
-/// A detector's box.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ScoredBox {
-    /// The box, in coordinates of the caller's choice.
-    pub area: Rect,
-    /// The detector's confidence, usually in [0, 1].
-    pub confidence: f64,
-    /// What it is, if the detector says so.
-    pub class: Option<u32>,
-}
-
-/// A track as it is reported in a frame.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ReportedBox {
-    /// The track, counted from 1 in the order of their starts.
-    pub identity: u64,
-    /// Its box.
-    pub tracked_box: Rect,
-    /// Its class.
-    pub class: Option<u32>,
-}
 
 /// How ByteTrack works; the defaults are those of its paper, with its `match_thresh` of 0.9 as an overlap of 0.1.
 #[derive(Debug, Clone, PartialEq)]
@@ -106,9 +85,11 @@ impl Default for ByteParameters {
 #[derive(Debug)]
 struct Track {
     identity: u64,
-    filter: StateFilter<BoxModel, { box_model::STATE }, { box_model::MEASURED }>,
+    filter: BoxFilter,
     predicted: Rect,
     class: Option<u32>,
+    /// The detection that it was last updated with.
+    detection: usize,
     hits: u32,
     /// Frames since the last update; 0 if it was updated in this frame.
     unseen: u32,
@@ -138,36 +119,6 @@ impl ByteTracker {
         }
     }
 
-    /// Steps 1 to 7 for the next frame's detections, also if there are none.
-    ///
-    /// # Errors
-    /// [`FilterError`] if a detection is so odd that no track can start from it.
-    pub fn update(&mut self, detections: &[ScoredBox]) -> Result<&[ReportedBox], FilterError> {
-        self.frames += 1;
-        self.predict();
-        let ByteParameters { high, low, min_overlap, enlarged, min_overlap_low, .. } = self.parameters;
-        let sure: Vec<&ScoredBox> = detections.iter().filter(|one| one.confidence >= high).collect();
-        let unsure: Vec<&ScoredBox> =
-            detections.iter().filter(|one| (low..high).contains(&one.confidence)).collect();
-        let everyone: Vec<usize> = (0..self.tracks.len()).collect();
-        let mut left = self.pair(&sure, &everyone, min_overlap, 0.0);
-        if enlarged > 0.0 {
-            let unseen: Vec<usize> =
-                (0..self.tracks.len()).filter(|&index| self.tracks[index].unseen > 0).collect();
-            left = self.pair(&left, &unseen, min_overlap, enlarged);
-        }
-        let recent: Vec<usize> =
-            everyone.into_iter().filter(|&index| self.tracks[index].unseen == 1).collect();
-        self.pair(&unsure, &recent, min_overlap_low, 0.0);
-        let max_age = self.parameters.max_age;
-        self.tracks.retain(|track| track.unseen == 0 || (track.hits > 1 && track.unseen <= max_age));
-        for one in left {
-            self.start(one)?;
-        }
-        self.report();
-        Ok(&self.reported)
-    }
-
     /// Step 1.
     fn predict(&mut self) {
         self.tracks.retain_mut(|track| {
@@ -179,24 +130,25 @@ impl ByteTracker {
     }
 
     /// Steps 2 to 4, and the update of step 5; gives the detections that are left.
-    fn pair<'a>(
+    fn pair(
         &mut self,
-        seen: &[&'a ScoredBox],
+        detections: &[ScoredBox],
+        seen: Vec<usize>,
         tracks: &[usize],
         least: f64,
         enlarged: f64,
-    ) -> Vec<&'a ScoredBox> {
+    ) -> Vec<usize> {
         let grown = |area: &Rect| {
             let (w, h) = ((1.0 + 2.0 * enlarged) * area.w, (1.0 + 2.0 * enlarged) * area.h);
             Rect::new(area.x - enlarged * area.w, area.y - enlarged * area.h, w, h)
         };
         let costs = Grid::from_fn(seen.len(), tracks.len(), |row, column| {
-            let track = &self.tracks[tracks[column]];
+            let (one, track) = (&detections[seen[row]], &self.tracks[tracks[column]]);
             let overlap = match enlarged > 0.0 {
-                true => grown(&seen[row].area).overlap(&grown(&track.predicted)),
-                false => seen[row].area.overlap(&track.predicted),
+                true => grown(&one.area).overlap(&grown(&track.predicted)),
+                false => one.area.overlap(&track.predicted),
             };
-            if overlap < least || seen[row].class != track.class { 0.0 } else { -overlap }
+            if overlap < least || one.class != track.class { 0.0 } else { -overlap }
         });
         let mut is_left = vec![true; seen.len()];
         for &(row, column) in self.assigner.solve(&costs) {
@@ -205,16 +157,17 @@ impl ByteTracker {
             }
             let track = &mut self.tracks[tracks[column]];
             // A measurement that the filter cannot take leaves its prediction.
-            let _ = track.filter.update(&box_model::measured(&seen[row].area));
+            let _ = track.filter.update(&box_model::measured(&detections[seen[row]].area));
+            track.detection = seen[row];
             track.hits += 1;
             track.unseen = 0;
             is_left[row] = false;
         }
-        seen.iter().zip(is_left).filter_map(|(one, left)| left.then_some(*one)).collect()
+        seen.into_iter().zip(is_left).filter_map(|(one, left)| left.then_some(one)).collect()
     }
 
     /// Step 6.
-    fn start(&mut self, seen: &ScoredBox) -> Result<(), FilterError> {
+    fn start(&mut self, detection: usize, seen: &ScoredBox) -> Result<(), FilterError> {
         if seen.confidence < self.parameters.high + self.parameters.start_margin {
             return Ok(());
         }
@@ -226,6 +179,7 @@ impl ByteTracker {
             filter: StateFilter::new(self.parameters.filter, model, belief, options)?,
             predicted: seen.area,
             class: seen.class,
+            detection,
             hits: 1,
             unseen: 0,
         });
@@ -239,8 +193,43 @@ impl ByteTracker {
         self.reported.clear();
         self.reported.extend(due.filter_map(|track| {
             let tracked_box = box_model::box_of(&track.filter.belief().mean)?;
-            Some(ReportedBox { identity: track.identity, tracked_box, class: track.class })
+            let (identity, class, detection) = (track.identity, track.class, track.detection);
+            Some(ReportedBox { identity, tracked_box, class, detection })
         }));
+    }
+}
+
+impl BoxTracker for ByteTracker {
+    /// Steps 1 to 7.
+    fn track(&mut self, detections: &[ScoredBox]) -> Result<&[ReportedBox], FilterError> {
+        self.frames += 1;
+        self.predict();
+        let ByteParameters { high, low, min_overlap, enlarged, min_overlap_low, max_age, .. } =
+            self.parameters;
+        let with = |wanted: &dyn Fn(f64) -> bool| -> Vec<usize> {
+            (0..detections.len()).filter(|&place| wanted(detections[place].confidence)).collect()
+        };
+        let (sure, unsure) = (with(&|one| one >= high), with(&|one| (low..high).contains(&one)));
+        let everyone: Vec<usize> = (0..self.tracks.len()).collect();
+        let mut left = self.pair(detections, sure, &everyone, min_overlap, 0.0);
+        if enlarged > 0.0 {
+            let unseen: Vec<usize> =
+                (0..self.tracks.len()).filter(|&index| self.tracks[index].unseen > 0).collect();
+            left = self.pair(detections, left, &unseen, min_overlap, enlarged);
+        }
+        let recent: Vec<usize> =
+            everyone.into_iter().filter(|&index| self.tracks[index].unseen == 1).collect();
+        self.pair(detections, unsure, &recent, min_overlap_low, 0.0);
+        self.tracks.retain(|track| track.unseen == 0 || (track.hits > 1 && track.unseen <= max_age));
+        for place in left {
+            self.start(place, &detections[place])?;
+        }
+        self.report();
+        Ok(&self.reported)
+    }
+
+    fn move_camera(&mut self, motion: &CameraMotion) {
+        self.tracks.iter_mut().for_each(|track| box_model::move_camera(&mut track.filter, motion));
     }
 }
 
@@ -259,7 +248,7 @@ mod tests {
                         class: Some(class),
                     })
                     .collect();
-                tracker.update(&boxes).unwrap().iter().map(|one| one.identity).collect()
+                tracker.track(&boxes).unwrap().iter().map(|one| one.identity).collect()
             })
             .collect()
     }

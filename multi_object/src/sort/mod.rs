@@ -25,20 +25,26 @@ use infopart::{bayes::FilterError, geometry::Rect};
 use crate::{
     appearance::{Appearance, similarity},
     assignment::Assigner,
+    camera_motion::CameraMotion,
     grid::Grid,
     motion::{FilterKind, FilterOptions, StateFilter},
 };
 
 mod association;
 mod box_model;
+mod boxes;
 mod byte;
+mod oc;
 #[cfg(test)]
 mod tests;
 
 use association::Association;
 use box_model::BoxModel;
 pub use box_model::BoxNoise;
-pub use byte::{ByteParameters, ByteTracker, ReportedBox, ScoredBox};
+use boxes::BoxFilter;
+pub use boxes::{BoxTracker, ReportedBox, ScoredBox};
+pub use byte::{ByteParameters, ByteTracker};
+pub use oc::{OcParameters, OcTracker};
 
 /// How SORT works; the defaults are those of the reference.
 #[derive(Debug, Clone, PartialEq)]
@@ -80,12 +86,16 @@ pub struct Reported {
     pub identity: u64,
     /// Its box, in the coordinates of the detections.
     pub tracked_box: Rect,
+    /// Index of its detection among those given for the frame.
+    pub detection: usize,
 }
 
 #[derive(Debug)]
 struct Track {
     identity: u64,
-    filter: StateFilter<BoxModel, { box_model::STATE }, { box_model::MEASURED }>,
+    filter: BoxFilter,
+    /// The detection that it was last updated with.
+    detection: usize,
     /// Updates in a row.
     hit_streak: u32,
     /// Frames since the last update; 0 if it was updated in this frame.
@@ -106,6 +116,8 @@ pub struct Sort {
     assigner: Assigner,
     association: Association,
     reported: Vec<Reported>,
+    boxes: Vec<Rect>,
+    reported_boxes: Vec<ReportedBox>,
 }
 
 impl Sort {
@@ -122,6 +134,8 @@ impl Sort {
             assigner: Assigner::default(),
             association: Association::default(),
             reported: Vec::new(),
+            boxes: Vec::new(),
+            reported_boxes: Vec::new(),
         }
     }
 
@@ -191,6 +205,7 @@ impl Sort {
             let track = &mut self.tracks[track];
             track.unseen = 0;
             track.hit_streak += 1;
+            track.detection = detection;
             // A measurement that the filter cannot take leaves its prediction.
             let _ = track.filter.update(&box_model::measured(&detections[detection]));
             if let (Some(known), Some(seen)) = (&mut track.appearance, appearances) {
@@ -204,6 +219,7 @@ impl Sort {
             self.tracks.push(Track {
                 identity: self.started,
                 filter: StateFilter::new(self.parameters.filter, model, belief, options)?,
+                detection,
                 hit_streak: 0,
                 unseen: 0,
                 appearance: appearances.map(|seen| seen[detection].clone()),
@@ -222,9 +238,34 @@ impl Sort {
                 continue;
             }
             if let Some(tracked_box) = box_model::box_of(&track.filter.belief().mean) {
-                self.reported.push(Reported { identity: track.identity, tracked_box });
+                let (identity, detection) = (track.identity, track.detection);
+                self.reported.push(Reported { identity, tracked_box, detection });
             }
         }
         self.tracks.retain(|track| track.unseen <= max_age);
+    }
+}
+
+impl BoxTracker for Sort {
+    /// Confidences and classes do not count in the pairing.
+    fn track(&mut self, detections: &[ScoredBox]) -> Result<&[ReportedBox], FilterError> {
+        let mut boxes = std::mem::take(&mut self.boxes);
+        boxes.clear();
+        boxes.extend(detections.iter().map(|seen| seen.area));
+        let updated = self.update(&boxes, None).map(|_| ());
+        self.boxes = boxes;
+        updated?;
+        self.reported_boxes.clear();
+        self.reported_boxes.extend(self.reported.iter().map(|one| ReportedBox {
+            identity: one.identity,
+            tracked_box: one.tracked_box,
+            class: detections[one.detection].class,
+            detection: one.detection,
+        }));
+        Ok(&self.reported_boxes)
+    }
+
+    fn move_camera(&mut self, motion: &CameraMotion) {
+        self.tracks.iter_mut().for_each(|track| box_model::move_camera(&mut track.filter, motion));
     }
 }

@@ -2,8 +2,11 @@
 
 use infopart::geometry::Rect;
 
-use super::{BoxNoise, Reported, Sort, SortParameters};
-use crate::motion::FilterKind;
+use super::{
+    BoxNoise, BoxTracker, ByteParameters, ByteTracker, OcParameters, OcTracker, Reported, ScoredBox, Sort,
+    SortParameters,
+};
+use crate::{camera_motion::CameraMotion, motion::FilterKind};
 
 const HERE: Rect = Rect::new(100.0, 50.0, 20.0, 40.0);
 
@@ -64,6 +67,55 @@ fn under_noise_in_proportion_every_filter_follows_a_walker() {
                 "{filter:?}, {frame}"
             );
             assert!(reported[0].tracked_box.overlap(&seen) > 0.7, "{filter:?}, {frame}: {reported:?}");
+        }
+    }
+}
+
+/// Two who stand still before a camera that pans by more than a box in one frame; who is told under which name.
+fn names_after_a_pan(mut tracker: Box<dyn BoxTracker>, is_told: bool) -> Vec<(u64, Option<u32>, usize)> {
+    let pan = CameraMotion { shift: [-35.0, 12.0], ..CameraMotion::NONE };
+    let seen = |off: bool| {
+        [(0.0, 5), (200.0, 6)].map(|(x, class)| {
+            let area = HERE.translated(x, 0.0);
+            let area = if off { pan.of_box(&area) } else { area };
+            ScoredBox { area, confidence: 0.9, class: Some(class) }
+        })
+    };
+    (0..6).for_each(|_| assert_eq!(tracker.track(&seen(false)).unwrap().len(), 2));
+    if is_told {
+        tracker.move_camera(&pan);
+    }
+    let mut names: Vec<_> = (0..4)
+        .flat_map(|_| tracker.track(&seen(true)).unwrap().to_vec())
+        .map(|one| (one.identity, one.class, one.detection))
+        .collect();
+    names.sort_unstable();
+    names.dedup();
+    names
+}
+
+#[test]
+fn what_is_remembered_moves_with_the_camera_under_every_method_and_filter() {
+    let kept = [(1, Some(5), 0), (2, Some(6), 1)];
+    for filter in FilterKind::ALL {
+        let noise = BoxNoise::Proportional;
+        let trackers = || -> [Box<dyn BoxTracker>; 3] {
+            [
+                Box::new(Sort::new(SortParameters { filter, noise, ..SortParameters::default() })),
+                Box::new(ByteTracker::new(ByteParameters {
+                    filter,
+                    noise,
+                    enlarged: 0.0,
+                    ..ByteParameters::default()
+                })),
+                Box::new(OcTracker::new(OcParameters { filter, noise, ..OcParameters::default() })),
+            ]
+        };
+        for (method, tracker) in trackers().into_iter().enumerate() {
+            assert_eq!(names_after_a_pan(tracker, true), kept, "{method}, {filter:?}");
+        }
+        for (method, tracker) in trackers().into_iter().enumerate() {
+            assert_ne!(names_after_a_pan(tracker, false), kept, "{method}, {filter:?}");
         }
     }
 }

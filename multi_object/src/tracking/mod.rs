@@ -12,7 +12,7 @@
 //!
 //! A track is reported in frames where it was detected, from its eighth such frame on.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use infopart::{
     bayes::{FilterError, State},
@@ -25,11 +25,13 @@ use crate::{
     motion::{CentreModel, CentreNoise, FilterKind, FilterOptions, StateFilter},
 };
 
+mod clock;
 mod detector;
 mod reports;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use clock::PredictionClock;
 pub use detector::{Detector, SceneWarning, USUAL_MIN_AREA, WarningWatch};
 pub use reports::{Report, Reports, RowKind};
 
@@ -113,8 +115,7 @@ pub struct BlobTracker<D, const N: usize> {
     costs: Grid,
     assigner: Assigner,
     states: Vec<TrackState>,
-    predictions: u64,
-    prediction_time: Duration,
+    clock: PredictionClock,
 }
 
 impl<D: CentreModel<N>, const N: usize> BlobTracker<D, N> {
@@ -131,8 +132,7 @@ impl<D: CentreModel<N>, const N: usize> BlobTracker<D, N> {
             costs: Grid::default(),
             assigner: Assigner::default(),
             states: Vec::new(),
-            predictions: 0,
-            prediction_time: Duration::ZERO,
+            clock: PredictionClock::default(),
         })
     }
 
@@ -158,16 +158,12 @@ impl<D: CentreModel<N>, const N: usize> BlobTracker<D, N> {
 
     /// Mean time of predicting one track by one frame; `None` before the first.
     pub fn mean_prediction_time(&self) -> Option<Duration> {
-        (self.predictions > 0).then(|| self.prediction_time.div_f64(self.predictions as f64))
+        self.clock.mean()
     }
 
     /// Step 2.
     fn predict(&mut self) {
-        let start = Instant::now();
-        self.predictions += self.tracks.len() as u64;
-        // A filter that broke can predict nothing more.
-        self.tracks.retain_mut(|track| track.filter.predict().is_ok());
-        self.prediction_time += start.elapsed();
+        self.clock.predict(&mut self.tracks, |track| track.filter.predict());
         for track in &mut self.tracks {
             track.predicted = Some(track.tracked_box());
         }
