@@ -3,8 +3,9 @@
 //!
 //! Steps, each frame:
 //! 1. the frame's outline, and whether the scene was cut: the frame shows less of what the one before did than frames do lately,
-//! 2. (for each box asked about) it is carried into each view of the scene by the shift of the whole picture (`correlation/shift.rs`)
-//!    and put right by a cell's width or two, if the camera is steady enough; a view in which it meets the target, or which does not show it, tells nothing,
+//! 2. (for each box asked about) where the camera is steady, it is carried into each view of the scene by the shift of the whole
+//!    picture (`correlation/shift.rs`) and put right by a cell's width or two; a view in which it meets the target, or which does not
+//!    show it, tells nothing,
 //! 3. the correlation of the luminance in the box's middle, now and then; the highest over the views counts,
 //! 4. a view is kept, with where the target was, if the tracker is sure and the target has left its place in the latest view.
 

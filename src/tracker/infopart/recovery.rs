@@ -102,6 +102,8 @@ impl Target {
         let Belief { confidence, .. } = self.judge.believe(&mut evidence);
         self.estimate = Estimate::new(full, part, confidence, status(confidence));
         self.estimate.evidence = Some(evidence);
+        // As in the first frame: the particles begin anew.
+        self.estimate.effective_sample_size = parameters.particles as f64;
         self.restart_sets(parameters, &part);
     }
 }
