@@ -102,6 +102,8 @@ pub(super) struct Target {
     judge: Judge,
     /// The whole box when the target was last tracked, frame pixels.
     last_seen: Rect,
+    /// Frames in a row that it has been hidden by the scenery.
+    hidden: u32,
     search: Search,
     gate: LearningGate,
     #[cfg_attr(feature = "save", serde(skip))]
@@ -239,6 +241,7 @@ impl Target {
             cues,
             judge: Judge::default(),
             last_seen: box_in_frame,
+            hidden: 0,
             search: Search::new(&box_in_frame),
             gate: LearningGate::new(parameters),
             set_estimates: Vec::with_capacity(parameters.particle_sets),

@@ -14,6 +14,9 @@ use super::{
     SURE, Target, merge,
 };
 
+/// Frames in a row in which the target is lost and its place shows scenery, after which it is waited for where it was seen last.
+const HIDDEN: u32 = 5;
+
 impl Target {
     /// Looks at the scene; after a cut the target is doubted, and searched for at once if it is not seen.
     pub(super) fn see_scene(&mut self, frame: &FrameView<'_>) {
@@ -49,16 +52,18 @@ impl Target {
         fit
     }
 
-    /// Somebody hidden by the scenery is waited for where the target was seen last: the particles would hold on to the scenery.
+    /// Somebody hidden by the scenery for long is waited for where the target was seen last: the particles would hold on to the scenery.
     fn stay_where_seen(&mut self, parameters: &CheckedParameters) {
         if self.estimate.status == Status::Tracking {
             self.last_seen = self.estimate.box_in_frame;
         }
         let shows_scenery = self.estimate.evidence.is_some_and(|evidence| evidence.shows_scenery());
-        if self.estimate.status == Status::Lost && shows_scenery {
+        self.hidden = if self.estimate.status == Status::Lost && shows_scenery { self.hidden + 1 } else { 0 };
+        if self.hidden >= HIDDEN {
             let part = parameters.region.part_from_full(self.last_seen);
             (self.estimate.box_in_frame, self.estimate.part_in_frame) = (self.last_seen, part);
             self.restart_sets(parameters, &part);
+            self.hidden = 0;
         }
     }
 
