@@ -1,13 +1,13 @@
 //! How the camera moved from one frame to the next: a shift, a turn and a change of scale of the whole picture. For each frame:
 //!
-//! 1. Grey levels, averaged over squares so that at most [`WIDEST`] columns are left.
+//! 1. Grey levels, averaged over squares so that at most `WIDEST` columns are left.
 //! 2. Points of the frame before that can be found again: in each square of a grid the one whose patch changes most in every
 //!    direction (Shi and Tomasi's smaller eigenvalue), if it is not in one of the boxes of objects, which move by themselves.
 //! 3. Each is looked for: the patch of least squared difference, first in pictures of a quarter of the size, then ever nearer in
 //!    finer ones, and at the end to a part of a pixel by the parabola through the neighbours' differences.
 //! 4. Every point and its partner far off give a motion; the one that most points agree with is fitted to all of those by least
 //!    squares, twice.
-//! 5. Without agreement of [`AGREEING`] of the points nothing is said: the picture is blurred, black, or another scene.
+//! 5. Without agreement of `AGREEING` of the points nothing is said: the picture is blurred, black, or another scene.
 //!
 //! ```
 //! use infopart::frame::{FrameView, PixelFormat};
