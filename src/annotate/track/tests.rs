@@ -125,12 +125,12 @@ fn a_new_key_frame_costs_its_own_passes_and_nothing_else() {
     let keys = [(0, Some(0.0)), (9, Some(9.0))];
     let (_, shown) = tracked(&keys, 12, Sides::Both, &mut passes);
     assert_eq!(shown.len(), 10 + 10 + 3);
-    assert_eq!(tracked(&keys, 12, Sides::Both, &mut passes).1, []);
+    assert_eq!(tracked(&keys, 12, Sides::Both, &mut passes).1, Vec::<usize>::new());
     let (_, shown) = tracked(&[keys[0], (4, Some(8.0)), keys[1]], 12, Sides::Both, &mut passes);
     assert_eq!(shown, [4, 3, 2, 1, 0, 4, 5, 6, 7, 8, 9]);
     // Taken back, the passes are as they were, and those of the key frame can be forgotten.
     passes.forget_unused();
-    assert_eq!(tracked(&keys, 12, Sides::Both, &mut passes).1, []);
+    assert_eq!(tracked(&keys, 12, Sides::Both, &mut passes).1, Vec::<usize>::new());
     passes.forget_unused();
     assert!(passes.iter().all(|pass| pass.from != 4) && passes.iter().count() == 3, "{passes:?}");
 }
