@@ -144,9 +144,7 @@ impl ForegroundMap {
         if places < 1.0 {
             return -1.0;
         }
-        let (x, y) = target.centre();
-        let (w, h) = (RING.0 * target.w, RING.1 * target.h);
-        let [all, all_places] = self.sum(Rect::new(x - w / 2.0, y - h / 2.0, w, h));
+        let [all, all_places] = self.sum(target.scaled_about_centre(RING));
         let ring_places = all_places - places;
         let ring = if ring_places > 1.0 { (all - inside) / ring_places } else { 0.0 };
         inside / places - ring
