@@ -17,6 +17,7 @@ use infopart::{
         filter::{CorrelationFilter, FilterOptions},
         grid::{CHANNELS, Grid},
         scale::{ScaleFilter, ScaleOptions},
+        spectrum::PlaneSpectra,
         window::Window,
     },
     features::{
@@ -153,22 +154,24 @@ fn correlation(c: &mut Criterion) {
     c.bench_function("grid of 32 x 32 cells", |b| {
         b.iter(|| grid.describe(black_box(&integrals), window, &own));
     });
+    let mut spectra = PlaneSpectra::new(CELLS, CHANNELS);
+    c.bench_function("spectra of its planes", |b| b.iter(|| spectra.compute(black_box(grid.planes()))));
     let (width, height) = (full.w / window.side, full.h / window.side);
     let fresh = CorrelationFilter::new(FILTER, CHANNELS, width, height);
     c.bench_function("correlation, learning in the first frame", |b| {
         b.iter_batched_ref(
             || fresh.clone(),
-            |filter| filter.learn(black_box(grid.planes()), None),
+            |filter| filter.learn(black_box(&spectra), None),
             BatchSize::SmallInput,
         );
     });
     let mut filter = fresh.clone();
-    filter.learn(grid.planes(), None);
+    filter.learn(&spectra, None);
     c.bench_function("correlation, learning in a later frame", |b| {
-        b.iter(|| filter.learn(black_box(grid.planes()), None));
+        b.iter(|| filter.learn(black_box(&spectra), None));
     });
     c.bench_function("correlation, response and its peak", |b| {
-        b.iter(|| filter.respond(black_box(grid.planes()), window).peak());
+        b.iter(|| filter.respond(black_box(&spectra), window).peak());
     });
     let centres: Vec<(f64, f64)> = {
         let mut rng = rng();

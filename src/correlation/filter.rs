@@ -19,7 +19,7 @@ use realfft::num_complex::Complex32;
 
 use super::{
     response::Response,
-    spectrum::{Fourier, Scratch},
+    spectrum::{Fourier, PlaneSpectra, Scratch},
     window::Window,
 };
 
@@ -72,7 +72,6 @@ pub struct CorrelationFilter {
 #[derive(Clone)]
 #[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
 struct Channel {
-    x: Vec<Complex32>,
     f: Vec<Complex32>,
     g: Vec<Complex32>,
     h: Vec<Complex32>,
@@ -87,13 +86,7 @@ impl CorrelationFilter {
         let fourier = Fourier::new(side);
         let mut scratch = fourier.scratch();
         let zeros = vec![Complex32::default(); fourier.spectrum_length()];
-        let channel = Channel {
-            x: zeros.clone(),
-            f: zeros.clone(),
-            g: zeros.clone(),
-            h: zeros.clone(),
-            filter: zeros.clone(),
-        };
+        let channel = Channel { f: zeros.clone(), g: zeros.clone(), h: zeros.clone(), filter: zeros.clone() };
         let sigma = options.label_sigma * (width * height).sqrt() * side as f64;
         let mut label = zeros.clone();
         fourier.forward(&gaussian(side, sigma), &mut label, &mut scratch);
@@ -119,38 +112,29 @@ impl CorrelationFilter {
         &self.response
     }
 
-    /// Correlates the filter with a window, given by its planes of cells, one after another.
-    pub fn respond(&mut self, planes: &[f32], window: Window) -> &Response {
-        self.transform(planes);
-        self.correlate(window);
+    /// Correlates the filter with a window, given by the spectra of its planes of cells.
+    pub fn respond(&mut self, planes: &PlaneSpectra, window: Window) -> &Response {
+        self.correlate(planes, window);
         let scale = 1.0 / self.own_answer;
         self.response.values_mut(window).iter_mut().for_each(|value| *value *= scale);
         &self.response
     }
 
-    /// Learns that the target is at the centre of a window, given by its planes of cells, one after another. `own`, if given, says
+    /// Learns that the target is at the centre of a window, given by the spectra of its planes of cells. `own`, if given, says
     /// how much of each cell the filter may use, in [0, 1], row by row.
-    pub fn learn(&mut self, planes: &[f32], own: Option<&[f32]>) {
+    pub fn learn(&mut self, planes: &PlaneSpectra, own: Option<&[f32]>) {
         self.support.copy_from_slice(&self.in_box);
         if let Some(own) = own {
             self.support.iter_mut().zip(own).for_each(|(support, own)| *support *= own);
         }
-        self.transform(planes);
-        self.solve();
-        self.correlate(self.response.window());
+        self.solve(planes);
+        self.correlate(planes, self.response.window());
         self.own_answer = self.response.values()[0].max(1e-6);
     }
 
-    fn transform(&mut self, planes: &[f32]) {
-        let (fourier, area) = (&self.fourier, self.options.side * self.options.side);
-        for (channel, plane) in self.channels.iter_mut().zip(planes.chunks_exact(area)) {
-            fourier.forward(plane, &mut channel.x, &mut self.scratch);
-        }
-    }
-
-    fn correlate(&mut self, window: Window) {
+    fn correlate(&mut self, planes: &PlaneSpectra, window: Window) {
         self.product.fill(Complex32::default());
-        for Channel { x, filter, .. } in &self.channels {
+        for (Channel { filter, .. }, x) in self.channels.iter().zip(planes.each()) {
             for ((sum, filter), x) in self.product.iter_mut().zip(filter).zip(x) {
                 *sum += filter.conj() * x;
             }
@@ -159,18 +143,18 @@ impl CorrelationFilter {
     }
 
     /// Steps 1 to 3.
-    fn solve(&mut self) {
+    fn solve(&mut self, planes: &PlaneSpectra) {
         let mu = if self.learnt { self.options.temporal } else { 0.0 };
         self.energy.fill(0.0);
-        for Channel { x, g, h, .. } in &mut self.channels {
-            self.energy.iter_mut().zip(x.iter()).for_each(|(energy, x)| *energy += x.norm_sqr());
+        for (Channel { g, h, .. }, x) in self.channels.iter_mut().zip(planes.each()) {
+            self.energy.iter_mut().zip(x).for_each(|(energy, x)| *energy += x.norm_sqr());
             g.fill(Complex32::default());
             h.fill(Complex32::default());
         }
         let mut rho = RHO;
         for _ in 0..self.options.rounds {
-            self.fit_labels(mu, rho);
-            self.confine(mu, rho);
+            self.fit_labels(planes, mu, rho);
+            self.confine(planes, mu, rho);
             rho *= RHO_GROWTH;
         }
         for Channel { filter, g, .. } in &mut self.channels {
@@ -182,15 +166,15 @@ impl CorrelationFilter {
     /// Step 1 up to the sum over channels. With q = x conj(y) / T + mu f_before + rho (g - h), T the number of cells,
     ///   f = (q - x (x^H q) / (T (mu + rho) + x^H x)) / (mu + rho):
     /// f holds q, and `product` the fraction.
-    fn fit_labels(&mut self, mu: f32, rho: f32) {
+    fn fit_labels(&mut self, planes: &PlaneSpectra, mu: f32, rho: f32) {
         let area = (self.options.side * self.options.side) as f32;
         self.product.fill(Complex32::default());
-        for Channel { x, f, g, h, filter } in &mut self.channels {
+        for (Channel { f, g, h, filter }, x) in self.channels.iter_mut().zip(planes.each()) {
             let known = x.iter().zip(&self.label).zip(filter.iter());
             for ((f, ((x, y), before)), (g, h)) in f.iter_mut().zip(known).zip(g.iter().zip(h.iter())) {
                 *f = x * y.conj() / area + before * mu + (g - h) * rho;
             }
-            for ((sum, x), f) in self.product.iter_mut().zip(x.iter()).zip(f.iter()) {
+            for ((sum, x), f) in self.product.iter_mut().zip(x).zip(f.iter()) {
                 *sum += x.conj() * f;
             }
         }
@@ -200,10 +184,10 @@ impl CorrelationFilter {
     }
 
     /// The end of step 1, and steps 2 and 3.
-    fn confine(&mut self, mu: f32, rho: f32) {
+    fn confine(&mut self, planes: &PlaneSpectra, mu: f32, rho: f32) {
         let Self { channels, support, fourier, product, image, scratch, .. } = self;
-        for Channel { x, f, g, h, .. } in channels {
-            for ((f, x), product) in f.iter_mut().zip(x.iter()).zip(product.iter()) {
+        for (Channel { f, g, h, .. }, x) in channels.iter_mut().zip(planes.each()) {
+            for ((f, x), product) in f.iter_mut().zip(x).zip(product.iter()) {
                 *f = (*f - x * product) / (mu + rho);
             }
             for ((g, f), h) in g.iter_mut().zip(f.iter()).zip(h.iter()) {

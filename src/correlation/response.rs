@@ -2,6 +2,9 @@
 
 use super::window::Window;
 
+/// Distance from the middle of a cell, in cells, that is rounding.
+const NEARLY: f64 = 1e-9;
+
 /// Responses over a window, about 1 where the target is as learnt.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
@@ -65,8 +68,12 @@ impl Response {
         self.values[(row.rem_euclid(side) * side + column.rem_euclid(side)) as usize]
     }
 
-    /// Catmull-Rom interpolation.
+    /// Catmull-Rom interpolation; at the middle of a cell what the cell has.
     fn cubic(&self, u: f64, v: f64) -> f32 {
+        let (column, row) = (u.round(), v.round());
+        if (u - column).abs() < NEARLY && (v - row).abs() < NEARLY {
+            return self.wrapped(column as i64, row as i64);
+        }
         let (column, row) = (u.floor(), v.floor());
         let (wu, wv) = (cubic_weights((u - column) as f32), cubic_weights((v - row) as f32));
         let mut sum = 0.0;

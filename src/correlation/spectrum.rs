@@ -115,9 +115,57 @@ impl Fourier {
     }
 }
 
+/// The spectra of several planes of one side, one after another.
+#[derive(Clone)]
+#[cfg_attr(feature = "save", derive(serde::Serialize, serde::Deserialize))]
+pub struct PlaneSpectra {
+    fourier: Fourier,
+    scratch: Scratch,
+    values: Vec<Complex32>,
+}
+
+impl PlaneSpectra {
+    /// Of `count` empty planes of `side` x `side` cells, `side` being even.
+    pub fn new(side: usize, count: usize) -> Self {
+        let fourier = Fourier::new(side);
+        let values = vec![Complex32::default(); count * fourier.spectrum_length()];
+        Self { scratch: fourier.scratch(), values, fourier }
+    }
+
+    /// Transforms planes, given one after another.
+    pub fn compute(&mut self, planes: &[f32]) {
+        let Self { fourier, scratch, values } = self;
+        let (area, length) = (fourier.side * fourier.side, fourier.spectrum_length());
+        for (plane, spectrum) in planes.chunks_exact(area).zip(values.chunks_exact_mut(length)) {
+            fourier.forward(plane, spectrum, scratch);
+        }
+    }
+
+    /// The spectrum of each plane.
+    pub fn each(&self) -> impl Iterator<Item = &[Complex32]> {
+        self.values.chunks_exact(self.fourier.spectrum_length())
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn each_plane_has_the_spectrum_of_its_own() {
+        let (side, count) = (4, 3);
+        let planes: Vec<f32> = (0..count * side * side).map(|i| ((i * i) % 13) as f32).collect();
+        let mut spectra = PlaneSpectra::new(side, count);
+        spectra.compute(&planes);
+        let fourier = Fourier::new(side);
+        let mut scratch = fourier.scratch();
+        let mut alone = vec![Complex32::default(); fourier.spectrum_length()];
+        assert_eq!(spectra.each().count(), count);
+        for (plane, spectrum) in planes.chunks_exact(side * side).zip(spectra.each()) {
+            fourier.forward(plane, &mut alone, &mut scratch);
+            assert_eq!(spectrum, alone);
+        }
+    }
 
     #[test]
     fn a_spectrum_equals_the_naive_sum_and_goes_back_to_its_image() {

@@ -3,12 +3,16 @@
 //! Steps, each frame:
 //! 1. integral images of blocks over the window around where the target was,
 //! 2. the foreground probability over it, by colour,
-//! 3. the window's cells, the foreground probability being one number of each.
+//! 3. the window's cells, the foreground probability being one number of each, and the spectra of their planes.
 //! 4. before learning, once the foreground model has learnt: steps 2 and 3 around where the target is, and which cells are its
 //!    own.
 
 use crate::{
-    correlation::{grid::Grid, window::Window},
+    correlation::{
+        grid::{CHANNELS, Grid},
+        spectrum::PlaneSpectra,
+        window::Window,
+    },
     features::{
         blocks::BlockIntegrals,
         foreground::{ForegroundMap, ForegroundModel},
@@ -43,6 +47,7 @@ pub(super) struct WindowView {
     #[cfg_attr(feature = "save", serde(skip))]
     integrals: BlockIntegrals,
     grid: Grid,
+    spectra: PlaneSpectra,
     window: Window,
     /// Window side / sqrt(area of the whole box).
     scale: f64,
@@ -61,6 +66,7 @@ impl WindowView {
         Self {
             integrals: BlockIntegrals::default(),
             grid: Grid::new(side),
+            spectra: PlaneSpectra::new(side, CHANNELS),
             window: Window::around(&full, parameters.correlation_window),
             scale: parameters.correlation_window,
             foreground_model: ForegroundModel::new(parameters.colour_rate as f32),
@@ -107,6 +113,7 @@ impl WindowView {
             *probability = self.foreground.mean(cell_of(self.window, self.grid.side(), cell)).unwrap_or(0.5);
         }
         self.grid.describe(&self.integrals, self.window, &self.probabilities);
+        self.spectra.compute(self.grid.planes());
     }
 
     /// The end of step 4: the posterior of each cell from its colours and a prior that is highest in the box's middle.
@@ -142,9 +149,9 @@ impl WindowView {
         self.window
     }
 
-    /// The window's cells, a plane a channel.
-    pub fn planes(&self) -> &[f32] {
-        self.grid.planes()
+    /// The spectra of the window's cells, a plane a channel.
+    pub fn spectra(&self) -> &PlaneSpectra {
+        &self.spectra
     }
 
     /// How much of each of the window's cells is the target's own, in [0, 1].

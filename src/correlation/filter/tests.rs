@@ -20,6 +20,13 @@ fn noise(channels: usize, seed: u32) -> Vec<f32> {
     (0..channels * SIDE * SIDE).map(|_| next()).collect()
 }
 
+/// The spectra of planes.
+fn spectra(planes: &[f32]) -> PlaneSpectra {
+    let mut spectra = PlaneSpectra::new(SIDE, planes.len() / (SIDE * SIDE));
+    spectra.compute(planes);
+    spectra
+}
+
 /// Planes moved around by whole cells.
 fn rolled(planes: &[f32], right: usize, down: usize) -> Vec<f32> {
     let at = |i: usize| {
@@ -33,8 +40,8 @@ fn rolled(planes: &[f32], right: usize, down: usize) -> Vec<f32> {
 fn what_was_learnt_answers_one_at_its_own_place() {
     let planes = noise(3, 1);
     let mut filter = CorrelationFilter::new(options(), 3, 0.3, 0.5);
-    filter.learn(&planes, None);
-    let peak = filter.respond(&planes, window()).peak();
+    filter.learn(&spectra(&planes), None);
+    let peak = filter.respond(&spectra(&planes), window()).peak();
     assert!((peak.value - 1.0).abs() < 0.02, "{peak:?}");
     assert!((peak.x - 100.0).abs() < 0.5 && (peak.y - 60.0).abs() < 0.5, "{peak:?}");
 }
@@ -43,9 +50,9 @@ fn what_was_learnt_answers_one_at_its_own_place() {
 fn the_peak_moves_as_the_target_does() {
     let planes = noise(3, 2);
     let mut filter = CorrelationFilter::new(options(), 3, 0.3, 0.5);
-    filter.learn(&planes, None);
+    filter.learn(&spectra(&planes), None);
     for (right, down) in [(3, 0), (0, 2), (SIDE - 4, SIDE - 1)] {
-        let peak = filter.respond(&rolled(&planes, right, down), window()).peak();
+        let peak = filter.respond(&spectra(&rolled(&planes, right, down)), window()).peak();
         let signed = |cells: usize| if cells > SIDE / 2 { cells as f64 - SIDE as f64 } else { cells as f64 };
         // A cell is two pixels wide.
         assert!((peak.x - (100.0 + 2.0 * signed(right))).abs() < 0.5, "{right} {down} {peak:?}");
@@ -56,7 +63,7 @@ fn the_peak_moves_as_the_target_does() {
 #[test]
 fn the_filter_vanishes_outside_the_target() {
     let mut filter = CorrelationFilter::new(options(), 2, 0.25, 0.25);
-    filter.learn(&noise(2, 3), None);
+    filter.learn(&spectra(&noise(2, 3)), None);
     let mut image = vec![0.0; SIDE * SIDE];
     for channel in &filter.channels {
         filter.fourier.inverse(&channel.filter, &mut image, &mut filter.scratch);
@@ -74,7 +81,7 @@ fn the_filter_vanishes_outside_the_target() {
 fn cells_that_are_not_the_targets_own_hold_nothing_of_the_filter() {
     let own: Vec<f32> = (0..SIDE * SIDE).map(|i| if i % SIDE < SIDE / 2 { 0.0 } else { 1.0 }).collect();
     let mut filter = CorrelationFilter::new(options(), 2, 0.5, 0.5);
-    filter.learn(&noise(2, 3), Some(&own));
+    filter.learn(&spectra(&noise(2, 3)), Some(&own));
     let mut image = vec![0.0; SIDE * SIDE];
     for channel in &filter.channels {
         filter.fourier.inverse(&channel.filter, &mut image, &mut filter.scratch);
@@ -91,13 +98,14 @@ fn cells_that_are_not_the_targets_own_hold_nothing_of_the_filter() {
 fn the_closed_form_solves_each_frequencys_linear_system() {
     let whole = FilterOptions { rounds: 1, support: 100.0, ..options() };
     let mut filter = CorrelationFilter::new(whole, 3, 1.0, 1.0);
-    filter.learn(&noise(3, 4), None);
+    let planes = spectra(&noise(3, 4));
+    filter.learn(&planes, None);
     let area = (SIDE * SIDE) as f32;
     for k in 0..filter.label.len() {
         let projected: Complex32 =
-            filter.channels.iter().map(|channel| channel.x[k].conj() * channel.f[k]).sum();
-        for channel in &filter.channels {
-            let gradient = channel.x[k] * (projected - filter.label[k].conj()) / area + channel.f[k] * RHO;
+            filter.channels.iter().zip(planes.each()).map(|(channel, x)| x[k].conj() * channel.f[k]).sum();
+        for (channel, x) in filter.channels.iter().zip(planes.each()) {
+            let gradient = x[k] * (projected - filter.label[k].conj()) / area + channel.f[k] * RHO;
             assert!(gradient.norm() < 1e-3, "{k} {gradient}");
         }
     }
@@ -107,10 +115,10 @@ fn the_closed_form_solves_each_frequencys_linear_system() {
 fn a_stiffer_filter_stays_nearer_to_the_one_before() {
     let distance = |temporal: f32| {
         let mut filter = CorrelationFilter::new(FilterOptions { temporal, ..options() }, 2, 0.3, 0.5);
-        filter.learn(&noise(2, 5), None);
+        filter.learn(&spectra(&noise(2, 5)), None);
         let before: Vec<Vec<Complex32>> =
             filter.channels.iter().map(|channel| channel.filter.clone()).collect();
-        filter.learn(&noise(2, 6), None);
+        filter.learn(&spectra(&noise(2, 6)), None);
         let squared = |(channel, before): (&Channel, &Vec<Complex32>)| {
             channel.filter.iter().zip(before).map(|(a, b)| (a - b).norm_sqr()).sum::<f32>()
         };
@@ -123,6 +131,6 @@ fn a_stiffer_filter_stays_nearer_to_the_one_before() {
 fn flat_planes_are_learnt_without_a_number_that_is_none() {
     let mut filter = CorrelationFilter::new(options(), 2, 0.3, 0.5);
     let flat = vec![0.0; 2 * SIDE * SIDE];
-    filter.learn(&flat, None);
-    assert!(filter.respond(&flat, window()).values().iter().all(|value| value.is_finite()));
+    filter.learn(&spectra(&flat), None);
+    assert!(filter.respond(&spectra(&flat), window()).values().iter().all(|value| value.is_finite()));
 }

@@ -112,7 +112,7 @@ impl Member {
 impl Cue for Place {
     fn look(&mut self, view: &WindowView) {
         for member in &mut self.members {
-            member.peak = member.filter.respond(view.planes(), view.window()).peak();
+            member.peak = member.filter.respond(view.spectra(), view.window()).peak();
         }
     }
 
@@ -128,7 +128,7 @@ impl Cue for Place {
         let (turn, count) = (self.lessons % self.members.len(), self.lessons);
         for (number, member) in self.members.iter_mut().enumerate() {
             if count == 0 || number == turn {
-                member.filter.learn(view.planes(), member.confined.then(|| view.own_cells()));
+                member.filter.learn(view.spectra(), member.confined.then(|| view.own_cells()));
             }
         }
         self.lessons += 1;
