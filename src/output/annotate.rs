@@ -10,6 +10,8 @@ use crate::{frame::FrameView, geometry::Rect, tracker::Status};
 
 const BLACK: Ink = Ink::solid([0, 0, 0]);
 pub(super) const WHITE: Ink = Ink::solid([255, 255, 255]);
+pub(super) const COMPETITOR: Ink = Ink::solid([224, 96, 255]);
+pub(super) const SEARCHED: Ink = Ink::solid([96, 192, 255]);
 pub(super) const PARTICLE: Ink = Ink::solid([255, 224, 64]);
 /// Longer side, in pixels, below which a frame is enlarged so that lines and letters stay legible.
 const LEGIBLE_SIDE: u32 = 600;
@@ -21,7 +23,8 @@ const SIDE_PER_UNIT: f64 = 900.0;
 
 /// A copy of the event's frame with the full box in the colour of the status (green: tracking, orange: uncertain,
 /// red: lost), the tracked part as a thinner box, the particles as dots at their boxes' centres, the ground truth as
-/// a dashed white box, and a caption. Frames shorter than 600 pixels on their longer side are enlarged by a whole
+/// a dashed white box, places that look like the target in violet, windows in which a lost target is looked for dashed in
+/// blue with who may be it, and a caption. Frames shorter than 600 pixels on their longer side are enlarged by a whole
 /// number.
 pub fn annotate(event: &FrameEvent<'_>) -> RgbImage {
     let mut page = Page::with_boxes(event);
@@ -70,6 +73,7 @@ struct Page {
 impl Page {
     fn with_boxes(event: &FrameEvent<'_>) -> Self {
         let mut page = Self::of(event.frame);
+        page.draw_elsewhere(event);
         page.draw_particles(event);
         page.draw_ground_truth(event.ground_truth);
         page.draw_boxes(event);
@@ -112,6 +116,24 @@ impl Page {
             let relative = if largest > 0.0 { (hypothesis.weight / largest).sqrt() } else { 1.0 };
             let ink = PARTICLE.faded(0.12 + 0.6 * relative);
             canvas::fill_disc(&mut self.picture, centre, 1.2 * self.unit, ink);
+        }
+    }
+
+    fn draw_elsewhere(&mut self, event: &FrameEvent<'_>) {
+        let unit = self.unit;
+        let elsewhere = event.tracker.elsewhere();
+        let boxes =
+            [(elsewhere.searched, SEARCHED, Some(6.0 * unit)), (elsewhere.competitors, COMPETITOR, None)];
+        for (places, ink, dash) in boxes {
+            for place in places {
+                let stroke = Stroke { ink: ink.faded(0.85), thickness: 1.2 * unit, dash };
+                let place = self.zoomed(place);
+                canvas::stroke_rect(&mut self.picture, place, stroke);
+            }
+        }
+        if let Some(suspect) = elsewhere.suspect {
+            let stroke = Stroke { ink: SEARCHED, thickness: 2.0 * unit, dash: None };
+            self.outline(self.zoomed(suspect), stroke);
         }
     }
 
@@ -232,6 +254,22 @@ mod tests {
         parts.ground_truth = Some(Rect::new(300.0, 300.5, 100.0, 50.0));
         let lit = row(&parts).iter().filter(|&&lit| lit).count();
         assert!((40..=60).contains(&lit), "half of a dashed line: {lit}");
+    }
+
+    #[test]
+    fn competitors_and_a_search_have_colours_of_their_own() {
+        let mut parts = EventParts::on(grey(640, 480, 0), Rect::new(100.0, 100.0, 60.0, 160.0));
+        let place = |x: f64| Rect::new(x, 300.0, 40.0, 80.0);
+        parts.tracker.elsewhere.competitors = vec![place(300.0)];
+        parts.tracker.elsewhere.suspect = Some(place(400.0));
+        parts.tracker.elsewhere.searched = vec![place(500.0)];
+        let picture = annotate(&parts.event());
+        let colour = |x: u32| at(&picture, x, 340);
+        let [red, green, blue] = colour(300);
+        assert!(red > green && blue > green, "violet: {:?}", colour(300));
+        assert_eq!(colour(400), SEARCHED.colour);
+        let lit = (300..380).filter(|&y| at(&picture, 500, y)[2] > 90).count();
+        assert!((25..=55).contains(&lit), "dashed: {lit}");
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use image::RgbImage;
 
 use super::{
-    annotate::{PARTICLE, WHITE, status_ink},
+    annotate::{COMPETITOR, PARTICLE, WHITE, status_ink},
     canvas::{self, Ink, Stroke},
 };
 use crate::{geometry::Rect, tracker::Status};
@@ -20,7 +20,7 @@ enum Mark {
     Dots,
 }
 
-fn entries() -> [(Mark, &'static str); 6] {
+fn entries() -> [(Mark, &'static str); 7] {
     let line = |ink: Ink, thickness, dash| Mark::Box(Stroke { ink, thickness, dash });
     let full = |status| line(status_ink(status), 2.0, None);
     [
@@ -28,6 +28,7 @@ fn entries() -> [(Mark, &'static str); 6] {
         (full(Status::Uncertain), "uncertain"),
         (full(Status::Lost), "lost"),
         (line(status_ink(Status::Tracking).faded(0.85), 1.0, None), "tracked part"),
+        (line(COMPETITOR.faded(0.85), 1.2, None), "looks like it"),
         (Mark::Dots, "particles"),
         (line(WHITE.faded(0.9), 1.2, Some(4.0)), "ground truth"),
     ]

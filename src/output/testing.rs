@@ -6,7 +6,7 @@ use super::FrameEvent;
 use crate::{
     frame::{Frame, FrameStamp, FrameView, PixelFormat},
     geometry::{Rect, Region},
-    tracker::{BoxWarning, Estimate, Status, TrackError, Tracker, WeightedBox},
+    tracker::{BoxWarning, Elsewhere, Estimate, Status, TrackError, Tracker, WeightedBox},
 };
 
 /// What an event borrows.
@@ -60,6 +60,7 @@ impl EventParts {
 pub(crate) struct StillTracker {
     pub estimate: Option<Estimate>,
     pub hypotheses: Vec<WeightedBox>,
+    pub elsewhere: Elsewhere,
 }
 
 impl Tracker for StillTracker {
@@ -90,5 +91,9 @@ impl Tracker for StillTracker {
 
     fn hypotheses(&self) -> Vec<WeightedBox> {
         self.hypotheses.clone()
+    }
+
+    fn elsewhere(&self) -> Elsewhere {
+        self.elsewhere.clone()
     }
 }

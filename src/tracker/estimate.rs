@@ -95,6 +95,18 @@ pub struct WeightedBox {
     pub weight: f64,
 }
 
+/// What else the tracker looked at in a frame, for pictures.
+#[derive(Debug, Clone, Default, PartialEq)]
+#[non_exhaustive]
+pub struct Elsewhere {
+    /// Whole boxes of places that look like the target and are not where it is taken to be, best first, in frame coordinates.
+    pub competitors: Vec<Rect>,
+    /// Windows in which a lost target was looked for, in frame coordinates.
+    pub searched: Vec<Rect>,
+    /// The whole box of who may be the lost target, but was not met often enough yet, in frame coordinates.
+    pub suspect: Option<Rect>,
+}
+
 /// How long one stage of a frame took.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct StageTime {

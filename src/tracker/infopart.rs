@@ -40,7 +40,7 @@ use super::{
     TrackError, Tracker,
     confidence::Judge,
     cues::{Cues, Fit, Lesson},
-    estimate::{BoxWarning, Estimate, StageTime, Status, WeightedBox},
+    estimate::{BoxWarning, Elsewhere, Estimate, StageTime, Status, WeightedBox},
     first_box,
     identity::{Identity, Portrait},
     learning_gate::LearningGate,
@@ -108,8 +108,12 @@ pub(super) struct Target {
     gate: LearningGate,
     #[cfg_attr(feature = "save", serde(skip))]
     set_estimates: Vec<ParticleEstimate<3>>,
-    /// Scratch: parts where the cues answer and the target is not.
+    /// Whole boxes where the cues answer and the target is not.
+    competitors: Vec<Rect>,
+    /// Scratch: their parts.
     others: Vec<Rect>,
+    /// Windows looked over for a lost target.
+    searched: Vec<Rect>,
 }
 
 impl InfoPart {
@@ -245,7 +249,9 @@ impl Target {
             search: Search::new(&box_in_frame),
             gate: LearningGate::new(parameters),
             set_estimates: Vec::with_capacity(parameters.particle_sets),
+            competitors: Vec::new(),
             others: Vec::new(),
+            searched: Vec::new(),
         }
     }
 
@@ -357,7 +363,9 @@ impl Target {
         let train = is_due(parameters.update_interval) && f64::from(fit.score) > parameters.update_score;
         let correlate = is_due(parameters.correlation_interval);
         if train {
-            self.find_others(parameters);
+            let parts = self.competitors.iter().map(|full| parameters.region.part_from_full(*full));
+            self.others.clear();
+            self.others.extend(parts);
         }
         let Self { cues, estimate, frame: number, others, identity, .. } = self;
         let Estimate { part_in_frame: part, box_in_frame: full, .. } = *estimate;
@@ -392,12 +400,11 @@ impl Target {
         );
     }
 
-    /// The parts where the window's cues answer and the target is not.
-    fn find_others(&mut self, parameters: &CheckedParameters) {
-        let Self { cues, others, estimate, .. } = self;
-        let elsewhere = cues.answered_elsewhere(estimate.box_in_frame, OTHERS_OVERLAP);
-        others.clear();
-        others.extend(elsewhere.map(|full| parameters.region.part_from_full(full)));
+    /// Where the window's cues answer and the target is not.
+    fn find_competitors(&mut self) {
+        let Self { cues, competitors, estimate, .. } = self;
+        competitors.clear();
+        competitors.extend(cues.answered_elsewhere(estimate.box_in_frame, OTHERS_OVERLAP));
     }
 }
 
@@ -492,6 +499,15 @@ impl Tracker for InfoPart {
                 weight: weight * share,
             })
             .collect()
+    }
+
+    fn elsewhere(&self) -> Elsewhere {
+        let Some(target) = &self.target else { return Elsewhere::default() };
+        Elsewhere {
+            competitors: target.competitors.clone(),
+            searched: target.searched.clone(),
+            suspect: target.search.suspect(),
+        }
     }
 
     fn stage_times(&self) -> &[StageTime] {

@@ -28,7 +28,7 @@ use crate::{
     geometry::Rect,
 };
 
-pub use estimate::{BoxWarning, Estimate, Evidence, StageTime, Status, WeightedBox};
+pub use estimate::{BoxWarning, Elsewhere, Estimate, Evidence, StageTime, Status, WeightedBox};
 pub use infopart::InfoPart;
 pub use parameters::{CheckedParameters, ParameterError, Parameters, SCHEMA_VERSION};
 #[cfg(feature = "save")]
@@ -68,6 +68,11 @@ pub trait Tracker: Send {
     /// The hypotheses weighed in the last frame, as full boxes, for pictures; none if the tracker has no particles.
     fn hypotheses(&self) -> Vec<WeightedBox> {
         Vec::new()
+    }
+
+    /// What else the tracker looked at in the last frame, for pictures; nothing if it looks nowhere else.
+    fn elsewhere(&self) -> Elsewhere {
+        Elsewhere::default()
     }
 
     /// How long each stage of the last `init` or `update` took, in order; none if the tracker does not measure.

@@ -159,9 +159,9 @@ impl Cues {
         }
     }
 
-    /// Side of the window last seen, if any cue looks over one, pixels.
-    pub fn window_side(&self) -> Option<f64> {
-        self.window.as_ref().map(|window| window.view.window().side)
+    /// The window last seen, if any cue looks over one, frame pixels.
+    pub fn window(&self) -> Option<Rect> {
+        self.window.as_ref().map(|window| window.view.window().to_rect())
     }
 
     /// The colours of the target and of what surrounds it, if any cue looks over a window.

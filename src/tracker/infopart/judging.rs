@@ -47,6 +47,7 @@ impl Target {
             self.set_estimates.iter().map(|set| set.effective_sample_size).sum();
         self.estimate.covariance = covariance;
         self.estimate.evidence = Some(evidence);
+        self.find_competitors();
         self.cues.credit(&full);
         self.stay_where_seen(parameters);
         fit

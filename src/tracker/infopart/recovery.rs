@@ -25,8 +25,9 @@ impl Target {
         frame: &FrameView<'_>,
         integrals: &mut RegionIntegrals,
     ) {
+        self.searched.clear();
         let Estimate { box_in_frame: full, status, evidence, .. } = self.estimate;
-        let (Some(window), Some(evidence)) = (self.cues.window_side(), evidence) else { return };
+        let (Some(window), Some(evidence)) = (self.cues.window(), evidence) else { return };
         if parameters.search == SearchExtent::Off || !self.search.goes_on(&full, status) {
             return;
         }
@@ -34,9 +35,10 @@ impl Target {
             Suspect { full, merit: MERIT.max(confidence::of_frame(&evidence) * evidence.likeness) };
         let mut is_met = self.find_better(parameters, frame, integrals, full, &mut best);
         if parameters.search == SearchExtent::Frame {
-            for place in self.places(frame, window).into_iter().flatten() {
+            for place in self.places(frame, window.w).into_iter().flatten() {
                 self.cues.see(frame, place);
                 self.cues.look(&place);
+                self.searched.extend(self.cues.window());
                 is_met |= self.find_better(parameters, frame, integrals, place, &mut best);
             }
         }
