@@ -4,6 +4,7 @@ mod program_scene;
 
 use std::fs;
 
+use infopart::geometry::Rect;
 use program_scene::Scene;
 
 /// The cells of a tracker's line in the table.
@@ -31,6 +32,18 @@ fn the_demo_writes_what_it_names_and_tracks_the_walker() {
             )
         );
     }
+    let leaving = cells(&first.stdout, "leaving");
+    let (auc, lost) = (leaving[2], leaving[5]);
+    assert!(auc > 0.4 && lost > 10.0, "found again after it was lost: {}", first.stdout);
+    let boxes = |file: &str| -> Vec<Rect> {
+        let number = |text: &str| text.parse::<f64>().unwrap();
+        let text = scene.read(&format!("a walk/{file}"));
+        let rows = text.lines().map(|line| line.split(',').map(number).collect::<Vec<f64>>());
+        rows.map(|row| Rect::new(row[0], row[1], row[2], row[3])).collect()
+    };
+    let (rows, truth) = (boxes("results/leaving.txt"), boxes("leaving/groundtruth_rect.txt"));
+    let back = truth.iter().rposition(|full| full.x.is_nan()).unwrap() + 40;
+    assert!(rows[back].overlap(&truth[back]) > 0.6, "{:?} {:?}", rows[back], truth[back]);
     let sheet = image::open(scene.path("a walk/contact_sheet.png")).unwrap();
     assert!(sheet.width() > 1000 && sheet.height() > 800);
     assert!(first.stdout.contains("a walk/contact_sheet.png"), "{}", first.stdout);

@@ -1,4 +1,5 @@
-//! `infopart demo`: a rendered walker, tracked by its part and by its whole body, to look at.
+//! `infopart demo`: a rendered walker, tracked by its part and by its whole body, and one who leaves and comes back, to look
+//! at.
 
 use std::{io::Write, path::PathBuf, sync::atomic::AtomicBool};
 
@@ -12,8 +13,8 @@ use infopart::{
     },
     program::{self, BadInput},
     run::{RunReport, run, tracker_title},
-    sequence::{self, Occluder, OpenOptions, Walker, WalkerOptions},
-    tracker::{CheckedParameters, InfoPart, Parameters, Tracker},
+    sequence::{self, Absence, Occluder, OpenOptions, Walker, WalkerOptions},
+    tracker::{CheckedParameters, InfoPart, Parameters},
 };
 
 use super::demo_folder::DemoFolder;
@@ -21,7 +22,8 @@ use super::demo_folder::DemoFolder;
 pub const EXAMPLES: &str = "\
 The person walks 150 frames down a street, while the legs swing, the light and the person's size change, and a \
 young tree passes in front. The same tracker then follows the upper 5/8 of the first box (infopart) and all of it \
-(whole-body), and a table of both is printed. It takes some seconds.
+(whole-body). In a second scene the person leaves at the right, and comes back at the left (leaving): lost, searched and \
+found again. A table of all three is printed. It takes some seconds.
 
 Examples:
   infopart demo                       everything into ./infopart-demo
@@ -29,18 +31,19 @@ Examples:
 
 Written into DIR:
   walker/            an OTB folder: 150 pictures and exact boxes
-  results/           boxes of both trackers: infopart.txt, whole-body.txt
-  contact_sheet.png  the same frames of both, annotated
+  leaving/           another: the person is away for a while
+  results/           the boxes: infopart.txt, whole-body.txt, leaving.txt
+  contact_sheet.png  frames of each, annotated
 An earlier demo is replaced; a folder that holds anything else is refused.
 
 Exit codes: 0 success, 2 DIR cannot be used, 130 interrupted with Ctrl-C";
-
-const REGIONS: [Region; 2] = [Region::Part, Region::Whole];
 
 /// What the sheet shows, counted from 1: the walk, and around frame 84 the person behind the young tree.
 const FRAMES_ON_SHEET: [usize; 8] = [1, 40, 72, 80, 84, 88, 112, 150];
 /// The share of a frame around the person that the sheet shows.
 const SHOWN: f64 = 0.6;
+/// Frames of the scene in which the person leaves.
+const LEAVING_FRAMES: usize = 280;
 const COLUMNS: u32 = 4;
 const TILE_WIDTH: u32 = 320;
 
@@ -55,24 +58,61 @@ pub struct DemoArgs {
 }
 
 pub fn demo(args: &DemoArgs) -> Result<()> {
-    let [part, whole] = REGIONS.map(|region| parameters(args.seed, region));
-    let parameters = [part?, whole?];
-    let walker = Walker::new(WalkerOptions {
+    let [part, whole] = [Region::Part, Region::Whole].map(|region| parameters(args.seed, region));
+    let (part, whole) = (part?, whole?);
+    let walk = Walker::new(WalkerOptions {
         seed: args.seed,
         occluder: Occluder::YoungTree,
         ..WalkerOptions::default()
     });
-    let frames = walker.ground_truth().len();
-    let folder = DemoFolder::claim(&args.out, frames)?;
+    let leaving = Walker::new(WalkerOptions {
+        seed: args.seed,
+        frames: LEAVING_FRAMES,
+        absence: Absence::Leaves,
+        ..WalkerOptions::default()
+    });
+    let folder = DemoFolder::claim(&args.out, walk.ground_truth().len(), leaving.ground_truth().len())?;
     let interrupted = program::watch().context("Ctrl-C cannot be watched for")?;
-    eprintln!("rendering {frames} frames of a walking person into {}", folder.walker().display());
-    walker.write_otb_folder(&folder.walker()).context("--out")?;
-    let mut passes = Vec::new();
-    for parameters in parameters {
-        passes.push(track(&folder, parameters, interrupted)?);
+    for (walker, into) in [(&walk, folder.walker()), (&leaving, folder.leaving())] {
+        let frames = walker.ground_truth().len();
+        eprintln!("rendering {frames} frames of a walking person into {}", into.display());
+        walker.write_otb_folder(&into).context("--out")?;
     }
-    contact_sheet(&passes).save(&folder.contact_sheet())?;
-    tell(&folder, &passes)
+    let walked = |parameters: &CheckedParameters, what| Pass {
+        title: tracker_title("infopart", parameters.region),
+        what,
+        input: folder.walker(),
+        frames_on_sheet: FRAMES_ON_SHEET.to_vec(),
+        shown: SHOWN,
+    };
+    let passes = [
+        (walked(&part, "the upper 5/8 is tracked"), &part),
+        (walked(&whole, "the whole box is tracked"), &whole),
+        (leaves_and_returns(&folder, &leaving), &part),
+    ];
+    let mut finished = Vec::new();
+    for (pass, parameters) in passes {
+        finished.push(track(&folder, pass, parameters, interrupted)?);
+    }
+    contact_sheet(&finished).save(&folder.contact_sheet())?;
+    tell(&folder, &finished)
+}
+
+/// Shown before the person leaves, while the street is empty, and when the person is back.
+fn leaves_and_returns(folder: &DemoFolder, walker: &Walker) -> Pass {
+    let truth = walker.ground_truth();
+    let leaves = truth.iter().position(Option::is_none).unwrap_or(truth.len());
+    let back = truth.iter().rposition(Option::is_none).map_or(truth.len(), |last| last + 1);
+    // Counted from 1, these are the last frame with the person in it, and the first after that.
+    let frames =
+        [1, leaves.saturating_sub(12), leaves + 4, leaves.midpoint(back), back + 10, back + 16, back + 40];
+    Pass {
+        title: "leaving".to_owned(),
+        what: "the person leaves at the right and comes back at the left: dashed, where it is searched",
+        input: folder.leaving(),
+        frames_on_sheet: frames.into_iter().chain([truth.len()]).collect(),
+        shown: 1.0,
+    }
 }
 
 fn parameters(seed: u64, region: Region) -> Result<CheckedParameters> {
@@ -82,25 +122,41 @@ fn parameters(seed: u64, region: Region) -> Result<CheckedParameters> {
     parameters.check().context("--seed")
 }
 
-/// A tracker's way through the sequence.
+/// A tracker's way through a sequence.
 struct Pass {
     title: String,
+    what: &'static str,
+    /// An OTB folder.
+    input: PathBuf,
+    /// Counted from 1.
+    frames_on_sheet: Vec<usize>,
+    /// The share of a frame around the person that the sheet shows.
+    shown: f64,
+}
+
+/// What became of it.
+struct Finished {
+    pass: Pass,
     report: RunReport,
     tiles: Vec<Tile>,
 }
 
-/// Tracks the walker from the written folder, as `infopart track` would.
-fn track(folder: &DemoFolder, parameters: CheckedParameters, interrupted: &AtomicBool) -> Result<Pass> {
-    let input = folder.walker().display().to_string();
+/// Tracks the person from the written folder, as `infopart track` would.
+fn track(
+    folder: &DemoFolder,
+    pass: Pass,
+    parameters: &CheckedParameters,
+    interrupted: &AtomicBool,
+) -> Result<Finished> {
+    let input = pass.input.display().to_string();
     let mut sequence = sequence::open(&input, &OpenOptions::default())?;
     let first_box = sequence.ground_truth.first().copied().flatten();
     let first_box = first_box.ok_or_else(|| BadInput(format!("{input}: no box in the first frame")))?;
     let mut tracker = InfoPart::new(parameters.clone());
-    let title = tracker_title(tracker.name(), parameters.region);
     let (format, origin) = (RowFormat::Otb, sequence.origin);
     let options = RowOptions { format, origin, initial_box_as_given: None, timing: false };
-    let mut rows = RowWriter::new(PartialFile::create(&folder.result(&title))?, options);
-    let mut sampler = SheetSampler::at(&FRAMES_ON_SHEET).close_up(SHOWN);
+    let mut rows = RowWriter::new(PartialFile::create(&folder.result(&pass.title))?, options);
+    let mut sampler = SheetSampler::at(&pass.frames_on_sheet).close_up(pass.shown);
     let mut progress = Progress::new(sequence.source.remaining());
     let mut observers: [&mut dyn Observer; 3] = [&mut rows, &mut sampler, &mut progress];
     let report = run(
@@ -111,44 +167,41 @@ fn track(folder: &DemoFolder, parameters: CheckedParameters, interrupted: &Atomi
         &mut observers,
         interrupted,
     )?;
-    Ok(Pass { title, report, tiles: sampler.into_tiles() })
+    Ok(Finished { pass, report, tiles: sampler.into_tiles() })
 }
 
-fn contact_sheet(passes: &[Pass]) -> ContactSheet {
+fn contact_sheet(passes: &[Finished]) -> ContactSheet {
     let mut sheet = ContactSheet::new(
-        "infopart demo: a walker, crossed by a young tree near frame 84",
+        "infopart demo: a walker, crossed by a young tree near frame 84, and one who leaves",
         COLUMNS,
         TILE_WIDTH,
     );
-    for pass in passes {
-        sheet.section(heading(pass), pass.tiles.clone());
+    for finished in passes {
+        sheet.section(heading(finished), finished.tiles.clone());
     }
     sheet
 }
 
-fn heading(pass: &Pass) -> String {
-    let what =
-        if pass.title == "whole-body" { "the whole box is tracked" } else { "the upper 5/8 is tracked" };
-    let scores = pass
-        .report
+fn heading(Finished { pass, report, .. }: &Finished) -> String {
+    let scores = report
         .scores
         .map(|scores| format!("   R1 {:.1} %   R2 {:.1} %   AUC {:.3}", scores.r1, scores.r2, scores.auc));
-    format!("{} ({what}){}", pass.title, scores.unwrap_or_default())
+    format!("{} ({}){}", pass.title, pass.what, scores.unwrap_or_default())
 }
 
-fn tell(folder: &DemoFolder, passes: &[Pass]) -> Result<()> {
+fn tell(folder: &DemoFolder, passes: &[Finished]) -> Result<()> {
     let mut output = StandardOutput::new();
     let text = format!("{}\n{}", table(passes), next_steps(folder, passes));
     output.write_all(text.as_bytes()).map_err(|error| output.name_error(error))?;
     Ok(output.complete()?)
 }
 
-fn table(passes: &[Pass]) -> String {
+fn table(passes: &[Finished]) -> String {
     let mut text = format!(
         "{:<11}{:>8}{:>9}{:>8}{:>10}{:>11}{:>6}\n",
         "tracker", "R1 %", "R2 %", "AUC", "frames/s", "uncertain", "lost"
     );
-    for Pass { title, report, .. } in passes {
+    for Finished { pass: Pass { title, .. }, report, .. } in passes {
         let (r1, r2, auc) =
             report.scores.map_or((0.0, 0.0, 0.0), |scores| (scores.r1, scores.r2, scores.auc));
         let speed = report.frames_per_second.unwrap_or_default();
@@ -161,12 +214,12 @@ curve, at most 0.952. frames/s: updates only. uncertain, lost: frames of which t
 "
 }
 
-fn next_steps(folder: &DemoFolder, passes: &[Pass]) -> String {
+fn next_steps(folder: &DemoFolder, passes: &[Finished]) -> String {
     let sheet = folder.contact_sheet();
     let (walker, annotated) = (quoted(folder.walker()), quoted(folder.annotated()));
     let mut text = format!("look at   {}\n", sheet.display());
-    for pass in passes {
-        text += &format!("boxes     {}\n", folder.result(&pass.title).display());
+    for finished in passes {
+        text += &format!("boxes     {}\n", folder.result(&finished.pass.title).display());
     }
     text + &format!("run next  infopart track {walker} --annotate {annotated}\n")
 }

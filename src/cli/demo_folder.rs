@@ -14,8 +14,9 @@ const SIGNATURE: &str = "Made by `infopart demo`";
 const ABOUT: &str = ", which overwrites it when it runs again: keep nothing of your own here.
 
 walker/             a rendered walking person as an OTB folder: img/ and the exact groundtruth_rect.txt
-results/            the boxes of both trackers, x,y,w,h a frame, the first pixel being 1,1
-contact_sheet.png   the same frames of both, annotated
+leaving/            another, who is away for a while
+results/            the boxes that were tracked, x,y,w,h a frame, the first pixel being 1,1
+contact_sheet.png   frames of each, annotated
 ";
 
 /// Where the demo's files are.
@@ -24,11 +25,14 @@ pub struct DemoFolder {
 }
 
 impl DemoFolder {
-    /// Makes the folder, or takes it over from an earlier demo that rendered at most `frames` frames.
-    pub fn claim(root: &Path, frames: usize) -> Result<Self> {
+    /// Makes the folder, or takes it over from an earlier demo that rendered at most so many frames of either scene.
+    pub fn claim(root: &Path, walker_frames: usize, leaving_frames: usize) -> Result<Self> {
         let folder = Self { root: root.to_owned() };
         if !folder.is_free().with_context(|| unreadable(root))? {
-            folder.refuse_foreign_pictures(frames)?;
+            folder.refuse_foreign_pictures([
+                (folder.walker(), walker_frames),
+                (folder.leaving(), leaving_frames),
+            ])?;
         }
         fs::create_dir_all(folder.results()).map_err(|error| unwritable(&folder.results(), &error))?;
         let about = folder.about();
@@ -38,6 +42,10 @@ impl DemoFolder {
 
     pub fn walker(&self) -> PathBuf {
         self.root.join("walker")
+    }
+
+    pub fn leaving(&self) -> PathBuf {
+        self.root.join("leaving")
     }
 
     pub fn result(&self, tracker: &str) -> PathBuf {
@@ -69,17 +77,19 @@ impl DemoFolder {
         }
     }
 
-    /// The walker replaces its frames and deletes those behind the last, so all pictures there must be the demo's own.
-    fn refuse_foreign_pictures(&self, frames: usize) -> Result<()> {
+    /// A scene replaces its frames and deletes those behind the last, so all pictures there must be the demo's own.
+    fn refuse_foreign_pictures(&self, scenes: [(PathBuf, usize); 2]) -> Result<()> {
         let is_ours = fs::read_to_string(self.about()).is_ok_and(|text| text.starts_with(SIGNATURE));
         if !is_ours {
             return Err(foreign(&self.root));
         }
-        let Ok(entries) = fs::read_dir(self.walker().join("img")) else { return Ok(()) };
-        for entry in entries {
-            let path = entry.with_context(|| unreadable(&self.walker()))?.path();
-            if !(1..=frames).any(|number| path.ends_with(Walker::image_name(number))) {
-                return Err(foreign(&path));
+        for (scene, frames) in scenes {
+            let Ok(entries) = fs::read_dir(scene.join("img")) else { continue };
+            for entry in entries {
+                let path = entry.with_context(|| unreadable(&scene))?.path();
+                if !(1..=frames).any(|number| path.ends_with(Walker::image_name(number))) {
+                    return Err(foreign(&path));
+                }
             }
         }
         Ok(())
@@ -118,12 +128,12 @@ mod tests {
         let empty = tempfile::tempdir().unwrap();
         let new = empty.path().join("new/deep");
         for _ in 0..2 {
-            let folder = DemoFolder::claim(&new, 150).unwrap();
+            let folder = DemoFolder::claim(&new, 150, 280).unwrap();
             fs::create_dir_all(folder.walker().join("img")).unwrap();
             fs::write(folder.walker().join("img/0150.jpg"), "").unwrap();
         }
         let empty = tempfile::tempdir().unwrap();
-        DemoFolder::claim(empty.path(), 150).unwrap();
+        DemoFolder::claim(empty.path(), 150, 280).unwrap();
     }
 
     #[test]
@@ -137,7 +147,7 @@ mod tests {
             if marked {
                 fs::write(root.path().join("ABOUT.txt"), SIGNATURE).unwrap();
             }
-            let Err(error) = DemoFolder::claim(root.path(), 150) else { panic!("taken over") };
+            let Err(error) = DemoFolder::claim(root.path(), 150, 280) else { panic!("taken over") };
             assert!(error.is::<BadInput>());
             assert!(error.to_string().contains("--out DIR"), "{error}");
             assert_eq!(error.to_string().contains("0151.jpg"), marked);
