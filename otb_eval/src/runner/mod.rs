@@ -11,7 +11,7 @@ mod pool;
 
 pub use execute::{Conversation, JobFailure, Recording, execute};
 pub use factory::{
-    ColourFactory, FactoryError, InfoPartFactory, Made, NAMES, OwnFactory, TrackerFactory, TrackerParameters,
+    ColourFactory, FactoryError, InfoPartFactory, Made, NAMES, OwnFactory, Recorder, TrackerFactory, TrackerParameters,
     named_factory,
 };
 pub use job::{Job, stem};
