@@ -154,9 +154,8 @@ struct Resampled<const N: usize> {
 impl<const N: usize> Resampled<N> {
     fn new(columns: &[&[Vec<f64>]; N], resamples: usize) -> Self {
         let sequences = columns.first().map_or(&[][..], |column| *column).iter().enumerate();
-        let rows = sequences.flat_map(|(sequence, seeds)| {
-            (0..seeds.len()).map(move |seed| Row::of(columns, sequence, seed))
-        });
+        let rows = sequences
+            .flat_map(|(sequence, seeds)| (0..seeds.len()).map(move |seed| Row::of(columns, sequence, seed)));
         Self { rows: rows.collect(), means: std::array::from_fn(|_| Vec::with_capacity(resamples)) }
     }
 
@@ -185,8 +184,9 @@ impl<const N: usize> Resampled<N> {
     /// Step 3.
     fn intervals(self) -> [Interval; N] {
         let tail = (1.0 - COVERAGE) / 2.0;
-        self.means.map(|mut means| {
-            Interval { low: quantile(&mut means, tail), high: quantile(&mut means, 1.0 - tail) }
+        self.means.map(|mut means| Interval {
+            low: quantile(&mut means, tail),
+            high: quantile(&mut means, 1.0 - tail),
         })
     }
 }
@@ -194,8 +194,7 @@ impl<const N: usize> Resampled<N> {
 /// Interpolated between neighbours; `values` is not empty, and is left in another order.
 fn quantile(values: &mut [f64], share: f64) -> f64 {
     let position = share * (values.len() - 1) as f64;
-    let (_, &mut below, greater) =
-        values.select_nth_unstable_by(position.floor() as usize, f64::total_cmp);
+    let (_, &mut below, greater) = values.select_nth_unstable_by(position.floor() as usize, f64::total_cmp);
     let above = greater.iter().copied().min_by(f64::total_cmp).unwrap_or(below);
     below + position.fract() * (above - below)
 }

@@ -110,7 +110,11 @@ fn what_is_not_the_result_that_was_written_is_damaged() {
         }
     }
     fs::write(&boxes, "1,2.5,3,4\n7,2.5,3,45\n").unwrap();
-    assert_eq!(kept(store.root(), &job()), Kept::Whole, "without a record another box in a later row is not noticed");
+    assert_eq!(
+        kept(store.root(), &job()),
+        Kept::Whole,
+        "without a record another box in a later row is not noticed"
+    );
     store.keep(&job(), &recording).unwrap();
     fs::write(folder.path().join("ope/infopart/seed_2/Crossing_time.txt"), "0.25\n").unwrap();
     assert!(damage().contains("1 times, not 2"));
