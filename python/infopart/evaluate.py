@@ -21,6 +21,7 @@ from __future__ import annotations
 
 import json
 import os
+import shlex
 import shutil
 import subprocess
 import sys
@@ -227,11 +228,13 @@ def _job(program: str, words: list[str], job: str) -> tuple[dict[str, bytes], st
         return {}, f"{job}: there is no program `{program}` on {os.uname().nodename}; install otb_eval there"
     with tempfile.TemporaryDirectory() as folder:
         command = [program, "run", *words, "--out", folder, "--job", job, "--jobs", "1"]
-        done = subprocess.run(command, capture_output=True, text=True)
+        # Supervised, in a group of its own, it ends with a worker that is killed.
+        supervised = [program, "supervise", shlex.join(command)]
+        done = subprocess.run(supervised, capture_output=True, text=True, start_new_session=True)
         root = Path(folder)
         files = {str(path.relative_to(root)): path.read_bytes() for path in root.rglob("*") if path.is_file()}
-    if done.returncode < 0:
-        raise _Killed(f"otb_eval was ended by signal {-done.returncode}")
+    if done.returncode < 0 or done.returncode > 128:
+        raise _Killed(f"otb_eval was ended by signal {max(-done.returncode, done.returncode - 128)}")
     if f"{job}.txt" in files:
         return files, ""
     return files, done.stderr.strip() or f"{job}: otb_eval ended with exit code {done.returncode} and left no result"

@@ -6,7 +6,7 @@ use anyhow::Result;
 use clap::Args;
 use infopart::output::{Destination, StandardOutput};
 
-use otb_eval::store::Kept;
+use otb_eval::results::{Kept, kept};
 
 use super::jobs::JobArgs;
 
@@ -28,7 +28,7 @@ pub fn plan(args: &PlanArgs) -> Result<()> {
     let work = args.jobs.work()?;
     let mut output = StandardOutput::new();
     for job in &work.jobs {
-        let line = job.to_json(work.store.kept(job) == Kept::Whole);
+        let line = job.to_json(kept(work.store.root(), job) == Kept::Whole);
         writeln!(output, "{line}").map_err(|error| output.name_error(error))?;
     }
     output.complete()?;

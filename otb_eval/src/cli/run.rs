@@ -7,8 +7,9 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use infopart::program;
 use otb_eval::{
+    results::{Kept, kept},
     runner::{Job, Outcome, RunOptions, RunSummary, run_jobs},
-    store::{Identity, Kept, Machine, StoreError},
+    store::{Identity, Machine, StoreError},
 };
 
 use super::{
@@ -101,11 +102,11 @@ impl RunArgs {
 
 /// Whether a job's result is there; one that is damaged is told, and made again.
 fn is_done(work: &Work, job: &Job) -> bool {
-    let kept = work.store.kept(job);
-    if let Kept::Damaged(damage) = &kept {
+    let there = kept(work.store.root(), job);
+    if let Kept::Damaged(damage) = &there {
         note(&format!("{}: the result there is damaged, and is made again: {damage}", job.id()));
     }
-    kept == Kept::Whole
+    there == Kept::Whole
 }
 
 /// Hears what trackers in other processes say of themselves; of one that says nothing sensible no job is run.

@@ -18,8 +18,6 @@ use crate::runner::{FactoryError, Made, TrackerFactory};
 pub use list::{ListError, TrackerList};
 pub use supervisor::supervise;
 
-pub(crate) use record::record;
-
 /// How a tracker's program is started and waited for.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ExternalOptions {
@@ -111,6 +109,6 @@ impl TrackerFactory for ExternalTracker {
     }
 
     fn create(&self, _seed: u64) -> Result<Made, FactoryError> {
-        Ok(Made::Command(self.clone()))
+        Ok(Made::Elsewhere(Box::new(self.clone())))
     }
 }

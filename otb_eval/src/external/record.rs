@@ -12,25 +12,19 @@ use super::{
 };
 use crate::{
     dataset::FrameFiles,
-    runner::{Conversation, Job, JobFailure, Recording},
+    runner::{Conversation, Job, JobFailure, Recorder, Recording},
     words::{of_sequence, without_flags},
 };
 
-/// Runs a job to its end, or until `stop` is true.
-///
-/// # Errors
-/// A failure says what is wrong and what to do.
-pub(crate) fn record(
-    job: &Job,
-    tracker: &ExternalTracker,
-    stop: &AtomicBool,
-) -> Result<Recording, JobFailure> {
-    let images = images_of(job).map_err(JobFailure::Failed)?;
-    let called_off = || stop.load(Ordering::Relaxed);
-    converse(job, tracker, &images, &called_off).map_err(|trouble| match trouble {
-        Trouble::CalledOff => JobFailure::Stopped,
-        Trouble::Broken(reason) => JobFailure::Failed(format!("`{}`: {reason}", tracker.command)),
-    })
+impl Recorder for ExternalTracker {
+    fn record(&self, job: &Job, stop: &AtomicBool) -> Result<Recording, JobFailure> {
+        let images = images_of(job).map_err(JobFailure::Failed)?;
+        let called_off = || stop.load(Ordering::Relaxed);
+        converse(job, self, &images, &called_off).map_err(|trouble| match trouble {
+            Trouble::CalledOff => JobFailure::Stopped,
+            Trouble::Broken(reason) => JobFailure::Failed(format!("`{}`: {reason}", self.command)),
+        })
+    }
 }
 
 fn converse(

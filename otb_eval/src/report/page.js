@@ -137,8 +137,8 @@
       { label: 'Overlap', largest: 1, digits: 2, values: data.overlaps.map(bytes) },
       { label: 'Centre error (pixels)', largest: data.largest, digits: 1, values: data.errors.map(bytes) },
     ];
-    // As wide as the place, so that letters keep their size on a phone.
-    const narrow = place.clientWidth < 600;
+    // As wide as the page, so that letters keep their size on a phone, and in print where the place was hidden.
+    const narrow = innerWidth < 700;
     const width = narrow ? 400 : 900, height = 190, left = 46, right = width - 10, top = 22, bottom = 164;
     const last = Math.max(1, data.frames - 1);
     const across = (i) => left + i * data.every / last * (right - left);

@@ -84,7 +84,7 @@ impl Separators {
 }
 
 /// The seconds beside a result, `SEQ_time.txt`; `None` if that is not there.
-pub(crate) fn seconds_beside(result: &Path) -> Result<Option<Vec<f64>>, ResultsError> {
+pub(super) fn seconds_beside(result: &Path) -> Result<Option<Vec<f64>>, ResultsError> {
     let stem = result.file_stem().unwrap_or_default().to_string_lossy();
     let path = result.with_file_name(format!("{stem}_time.txt"));
     if path.exists() { read_seconds(&path, 0).map(Some) } else { Ok(None) }

@@ -2,6 +2,7 @@
 
 mod file;
 mod index;
+mod kept;
 mod rows;
 
 use std::{
@@ -18,9 +19,9 @@ use crate::{
     words::printable,
 };
 
-pub(crate) use file::seconds_beside;
 pub use file::{ResultFile, Separators};
 pub(crate) use index::listed_as;
+pub use kept::{Kept, kept};
 
 /// Results that cannot be used.
 #[derive(Debug, Error)]

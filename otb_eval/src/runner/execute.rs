@@ -13,10 +13,7 @@ use infopart::{
 };
 
 use super::{Job, Made, TrackerFactory};
-use crate::{
-    external,
-    words::{of_sequence, without_flags},
-};
+use crate::words::{of_sequence, without_flags};
 
 /// What a job gives.
 #[derive(Debug, Clone, PartialEq)]
@@ -89,7 +86,7 @@ fn track(job: &Job, factory: &dyn TrackerFactory, stop: &AtomicBool) -> Result<R
     let failed = |error: &dyn std::fmt::Display| JobFailure::Failed(without_flags(&error.to_string()));
     let mut tracker = match factory.create(job.seed).map_err(|error| failed(&error))? {
         Made::Here(tracker) => tracker,
-        Made::Command(tracker) => return external::record(job, &tracker, stop),
+        Made::Elsewhere(recorder) => return recorder.record(job, stop),
     };
     let first = job.first_frame();
     let options = OpenOptions {

@@ -1,5 +1,7 @@
 //! Who makes trackers. The runner knows a tracker only by its factory, which makes one in this process or names a command.
 
+use std::sync::atomic::AtomicBool;
+
 use infopart::{
     geometry::Region,
     tracker::{
@@ -11,7 +13,7 @@ use serde::Serialize;
 use serde_json::Value;
 use thiserror::Error;
 
-use crate::external::ExternalTracker;
+use super::{Job, JobFailure, Recording};
 
 /// Names that [`named_factory`] knows: InfoPart's default, the same on the whole body, the method as printed, and the
 /// colour-histogram particle filter.
@@ -52,8 +54,17 @@ pub trait TrackerFactory: Send + Sync {
 pub enum Made {
     /// One in this process, which is handed pixels.
     Here(Box<dyn Tracker>),
-    /// A command, which is handed the paths of images.
-    Command(ExternalTracker),
+    /// One elsewhere, which does jobs by itself.
+    Elsewhere(Box<dyn Recorder>),
+}
+
+/// What does jobs by itself, such as a command that is handed the paths of images.
+pub trait Recorder {
+    /// Does a job to its end, or until `stop` is true.
+    ///
+    /// # Errors
+    /// A failure says what is wrong and what to do.
+    fn record(&self, job: &Job, stop: &AtomicBool) -> Result<Recording, JobFailure>;
 }
 
 /// A tracker that cannot be made.

@@ -11,8 +11,8 @@ mod pool;
 
 pub use execute::{Conversation, JobFailure, Recording, execute};
 pub use factory::{
-    ColourFactory, FactoryError, InfoPartFactory, Made, NAMES, OwnFactory, TrackerFactory, TrackerParameters,
-    named_factory,
+    ColourFactory, FactoryError, InfoPartFactory, Made, NAMES, OwnFactory, Recorder, TrackerFactory,
+    TrackerParameters, named_factory,
 };
 pub use job::{Job, stem};
 

@@ -1,32 +1,53 @@
 //! How sure scores are: intervals over sequences and seeds, and every tracker against a chosen one.
 
+use std::collections::BTreeMap;
+
 use rayon::prelude::*;
 
 use super::{LongTermScores, LongTermSequence, Measure, Table, TrackerScores};
 use crate::{
     compare::{Comparison, Pair, compare},
-    statistics::{Interval, RESAMPLES, holm, intervals, mean},
+    statistics::{Interval, RESAMPLES, holm, intervals_of_sets, mean},
     toolkits::{Curves, Rules},
 };
 
 /// Seed of the bootstrap: the same results give the same interval.
 const BOOTSTRAP_SEED: u64 = 1;
 
+/// A measure's values: sequences, each with a value a seed.
+type Columns = [Vec<Vec<f64>>; Measure::COUNT];
+
 /// The 95 % interval of each measure of [`Measure::ALL`], for each tracker of a table in its order; `None` where there is no
 /// score.
 pub fn certainty(table: &Table) -> Vec<[Option<Interval>; Measure::COUNT]> {
-    table.trackers.par_iter().map(|one| of_tracker(one, &table.toolkit.rules())).collect()
+    let rules = table.toolkit.rules();
+    let columns: Vec<Columns> = table.trackers.par_iter().map(|one| columns_of(one, &rules)).collect();
+    // Nearly always all trackers have the same sequences and seeds, which then are drawn once.
+    let mut alike: BTreeMap<Vec<usize>, Vec<usize>> = BTreeMap::new();
+    for (place, columns) in columns.iter().enumerate() {
+        alike.entry(columns[0].iter().map(Vec::len).collect()).or_default().push(place);
+    }
+    let mut found = vec![[None; Measure::COUNT]; columns.len()];
+    for places in alike.values() {
+        let sets: Vec<_> = places.iter().map(|place| columns[*place].each_ref().map(Vec::as_slice)).collect();
+        let intervals = intervals_of_sets(&sets, RESAMPLES, BOOTSTRAP_SEED).unwrap_or_default();
+        for (place, intervals) in places.iter().zip(intervals) {
+            let is_known = |column: &Vec<Vec<f64>>| column.iter().flatten().any(|value| !value.is_nan());
+            found[*place] = std::array::from_fn(|measure| {
+                Some(intervals[measure]).filter(|_| is_known(&columns[*place][measure]))
+            });
+        }
+    }
+    found
 }
 
-fn of_tracker(one: &TrackerScores, rules: &Rules) -> [Option<Interval>; Measure::COUNT] {
-    let columns = Measure::ALL.map(|measure| {
+/// Of the sequences that it has a score of.
+fn columns_of(one: &TrackerScores, rules: &Rules) -> Columns {
+    Measure::ALL.map(|measure| {
         let value = |curves: &Curves| measure.counted(curves, rules).unwrap_or(f64::NAN);
         let sequences = one.sequences.iter().map(|row| row.curves.iter().flatten().map(value).collect());
-        sequences.filter(|seeds: &Vec<f64>| !seeds.is_empty()).collect::<Vec<_>>()
-    });
-    let is_known = columns.each_ref().map(|column| column.iter().flatten().any(|value| !value.is_nan()));
-    let found = intervals(columns.each_ref().map(Vec::as_slice), RESAMPLES, BOOTSTRAP_SEED);
-    std::array::from_fn(|place| found.map(|found| found[place]).filter(|_| is_known[place]))
+        sequences.filter(|seeds: &Vec<f64>| !seeds.is_empty()).collect()
+    })
 }
 
 /// A tracker against the chosen one.

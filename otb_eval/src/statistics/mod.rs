@@ -3,7 +3,7 @@
 mod bootstrap;
 mod signed_rank;
 
-pub use bootstrap::{COVERAGE, Interval, RESAMPLES, intervals};
+pub use bootstrap::{COVERAGE, Interval, RESAMPLES, intervals, intervals_of_sets};
 pub use signed_rank::{holm, signed_rank};
 
 /// The mean; 0 of nothing.

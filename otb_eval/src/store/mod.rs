@@ -1,7 +1,6 @@
 //! The folder of results: `RESULTS/PROTOCOL/TRACKER/seed_S/SEQ[_SEGMENT].txt`, times and a record beside, and `run.json`.
 
 mod identity;
-mod kept;
 mod record;
 mod whole;
 
@@ -16,7 +15,6 @@ use thiserror::Error;
 use crate::runner::{Conversation, Job, Recording};
 
 pub use identity::{Identity, Machine};
-pub use kept::Kept;
 pub use record::Record;
 pub use whole::{remove_stale, write_whole};
 

@@ -6,6 +6,7 @@ use super::*;
 use crate::{
     dataset::FrameFolder,
     protocol::{HiddenFrames, Protocol, Segment, ShiftRules},
+    results::{Kept, kept},
 };
 
 fn identity(particles: u64, program: &str) -> Identity {
@@ -53,7 +54,7 @@ fn results_stand_where_the_layout_says_with_every_digit() {
     store.keep_failure(&job(), "no luck").unwrap();
     let failure = folder.path().join("ope/infopart/seed_2/Crossing.failed.json");
     assert!(fs::read_to_string(&failure).unwrap().contains("no luck"));
-    assert_eq!(store.kept(&job()), Kept::Absent);
+    assert_eq!(kept(store.root(), &job()), Kept::Absent);
     store.keep(&job(), &recording).unwrap();
     let read = |name: &str| fs::read_to_string(folder.path().join("ope/infopart/seed_2").join(name)).unwrap();
     assert_eq!(read("Crossing.txt"), "1,2.5,3,4\n0.3333333333333333,-7,10.25,16\n");
@@ -66,7 +67,7 @@ fn results_stand_where_the_layout_says_with_every_digit() {
     assert_eq!(external, expected);
     let record: Record = serde_json::from_str(&read("Crossing.result.json")).unwrap();
     assert_eq!((record.first_row, record.rows), (Some(1), 2));
-    assert!(store.kept(&job()) == Kept::Whole && !failure.exists());
+    assert!(kept(store.root(), &job()) == Kept::Whole && !failure.exists());
 }
 
 #[test]
@@ -80,7 +81,7 @@ fn what_is_not_the_result_that_was_written_is_damaged() {
         seconds: vec![0.25, 0.5],
         ..Recording::default()
     };
-    let damage = || match store.kept(&job()) {
+    let damage = || match kept(store.root(), &job()) {
         Kept::Damaged(damage) => damage,
         kept => format!("{kept:?}"),
     };
@@ -91,7 +92,7 @@ fn what_is_not_the_result_that_was_written_is_damaged() {
             // As versions before left it.
             fs::remove_file(Record::path(&boxes)).unwrap();
         }
-        assert_eq!(store.kept(&job()), Kept::Whole);
+        assert_eq!(kept(store.root(), &job()), Kept::Whole);
         for (text, needle) in [
             ("", "is empty"),
             ("\0\0\0\0", "line 1"),
@@ -109,7 +110,11 @@ fn what_is_not_the_result_that_was_written_is_damaged() {
         }
     }
     fs::write(&boxes, "1,2.5,3,4\n7,2.5,3,45\n").unwrap();
-    assert_eq!(store.kept(&job()), Kept::Whole, "without a record another box in a later row is not noticed");
+    assert_eq!(
+        kept(store.root(), &job()),
+        Kept::Whole,
+        "without a record another box in a later row is not noticed"
+    );
     store.keep(&job(), &recording).unwrap();
     fs::write(folder.path().join("ope/infopart/seed_2/Crossing_time.txt"), "0.25\n").unwrap();
     assert!(damage().contains("1 times, not 2"));
@@ -118,7 +123,7 @@ fn what_is_not_the_result_that_was_written_is_damaged() {
     assert!(damage().contains("no record of a result"));
     let other = Job { segment: Segment { start: 1, ..job().segment }, ..job() };
     store.keep(&job(), &recording).unwrap();
-    assert_eq!(store.kept(&other), Kept::Damaged("its run starts on another frame".into()));
+    assert_eq!(kept(store.root(), &other), Kept::Damaged("its run starts on another frame".into()));
 }
 
 #[test]
