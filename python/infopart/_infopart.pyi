@@ -4,7 +4,7 @@ import numpy as np
 import numpy.typing as npt
 from typing_extensions import Self, disjoint_base
 
-__all__ = ["NativeSequence", "NativeTracker", "VERSION", "parameters"]
+__all__ = ["NativeSequence", "NativeSort", "NativeTracker", "VERSION", "parameters"]
 
 VERSION: str
 
@@ -25,6 +25,27 @@ class NativeTracker:
     def config_json(self) -> str: ...
     def save(self) -> bytes: ...
     def close(self) -> None: ...
+
+@disjoint_base
+class NativeSort:
+    def __new__(
+        cls,
+        method: str,
+        max_age: int | None,
+        min_hits: int | None,
+        min_overlap: float | None,
+        high: float | None,
+        low: float | None,
+        camera_motion: bool,
+        rgb: bool,
+    ) -> Self: ...
+    def step(
+        self,
+        boxes: npt.NDArray[np.float64],
+        scores: npt.NDArray[np.float64],
+        classes: npt.NDArray[np.int64] | None,
+        frame: npt.NDArray[np.uint8] | None,
+    ) -> list[tuple[int, tuple[float, float, float, float], int | None, int]]: ...
 
 @final
 class NativeSequence:

@@ -6,6 +6,7 @@ use pyo3::prelude::*;
 
 mod frame;
 mod sequence;
+mod sort;
 mod tracker;
 
 /// The native half of the package `infopart`.
@@ -13,6 +14,8 @@ mod tracker;
 mod _infopart {
     #[pymodule_export]
     use crate::sequence::NativeSequence;
+    #[pymodule_export]
+    use crate::sort::NativeSort;
     #[pymodule_export]
     use crate::tracker::{NativeTracker, parameters};
 

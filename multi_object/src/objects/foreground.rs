@@ -161,7 +161,8 @@ impl Majority {
             for (sum, ((above, here), below)) in down.iter_mut().zip(above.iter().zip(&*here).zip(&*below)) {
                 *sum = above + here + below;
             }
-            let is_foreground = |around: &[u8], needed: u8| match around[0] + around[1] + around[2] >= needed {
+            let is_foreground = |around: &[u8], needed: u8| match around[0] + around[1] + around[2] >= needed
+            {
                 true => FOREGROUND,
                 false => 0,
             };

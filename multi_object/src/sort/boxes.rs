@@ -11,6 +11,16 @@ use crate::{
 /// What predicts a box.
 pub(super) type BoxFilter = StateFilter<BoxModel, STATE, MEASURED>;
 
+/// Pixels beyond this are taken for a mistake: no picture has so many in a row, and areas and their squares stay exact enough.
+const MOST_PIXELS: f64 = 1e7;
+
+/// Whether a tracker can take a box: finite, with sides above 0, within 10,000,000 pixels of the origin and no larger, and of an
+/// area that is a number.
+pub fn is_trackable(area: &Rect) -> bool {
+    let Rect { x, y, w, h } = *area;
+    area.is_proper() && [x, y, w, h].iter().all(|value| value.abs() <= MOST_PIXELS) && area.area().is_normal()
+}
+
 /// A detector's box.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ScoredBox {

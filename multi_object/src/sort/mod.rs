@@ -40,7 +40,7 @@ mod tests;
 use association::Association;
 pub use box_model::BoxNoise;
 use boxes::{BoxFilter, BoxTrack};
-pub use boxes::{BoxFilterParameters, BoxTracker, ReportedBox, ScoredBox};
+pub use boxes::{BoxFilterParameters, BoxTracker, ReportedBox, ScoredBox, is_trackable};
 pub use byte::{ByteParameters, ByteTracker};
 pub use oc::{OcParameters, OcTracker};
 
