@@ -4,6 +4,7 @@
 
 use pyo3::prelude::*;
 
+mod annotate;
 mod frame;
 mod sequence;
 mod sort;
@@ -12,6 +13,8 @@ mod tracker;
 /// The native half of the package `infopart`.
 #[pymodule]
 mod _infopart {
+    #[pymodule_export]
+    use crate::annotate::NativeAnnotator;
     #[pymodule_export]
     use crate::sequence::NativeSequence;
     #[pymodule_export]
