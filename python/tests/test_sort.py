@@ -56,13 +56,13 @@ def test_frames_without_boxes_and_max_age_decide_how_long_a_track_is_kept():
 def test_a_camera_that_pans_takes_its_tracks_along():
     rng = np.random.default_rng(5)
     ground = np.kron(rng.integers(0, 256, (40, 60), np.uint8), np.ones((8, 8), np.uint8))
-    before, after = ground[:240, :320], ground[16:256, 40:360]
+    before, after = ground[:240, :320], ground[8:248, 24:344]
 
     def names(camera_motion):
         tracker = infopart.Sort(max_age=5, min_hits=1, camera_motion=camera_motion)
         for _ in range(5):
             tracker.update([walker(100, 80), walker(200, 80)], frame=before)
-        found = [tracker.update([walker(60, 64), walker(160, 64)], frame=after) for _ in range(3)][-1]
+        found = [tracker.update([walker(76, 72), walker(176, 72)], frame=after) for _ in range(3)][-1]
         return sorted(one.identity for one in found)
 
     assert names(True) == [1, 2]
