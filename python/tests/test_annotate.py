@@ -1,6 +1,7 @@
 """A box in every frame from a few: the program's boxes, what is refused, and what other people's readers make of the files."""
 
 import json
+import os
 import subprocess
 
 import numpy as np
@@ -107,3 +108,60 @@ def test_pycocotools_reads_coco(walk, pictures, tmp_path):
     assert sorted(found) == [f"{number:04d}.png" for number in range(1, 16)]
     for number in range(1, 16):
         np.testing.assert_allclose(found[f"{number:04d}.png"]["bbox"], track.boxes[number - 1], atol=0.01)
+
+
+@pytest.fixture
+def keys(walk):
+    """Key frames whose object is absent from frame 16 on."""
+    _, truth = walk
+    return {1: truth[0], 10: truth[9], 16: None}
+
+
+def test_mot_score_reads_mot(pictures, keys, tmp_path):
+    program = os.environ.get("MOT_PROGRAM")
+    if not program:
+        pytest.skip("set MOT_PROGRAM to the built program `mot`")
+    truth, result, scored = (tmp_path / name for name in ("gt.txt", "tracks.txt", "scores.json"))
+    [track] = infopart.annotate(pictures, keys, seed=1, out=truth, format="mot")
+    # Written by hand, the first pixel being 1; one box is left out.
+    rows = [f"{frame},7,{x + 1},{y + 1},{w},{h},1,-1,-1,-1" for frame, (x, y, w, h) in enumerate(track.boxes[:14], 1)]
+    result.write_text("\n".join(rows) + "\n")
+    words = [program, "score", truth, result, "--rules", "trackeval", "--json", scored]
+    subprocess.run(words, check=True, capture_output=True)
+    one = json.loads(scored.read_text())["sequences"][0]["scores"]
+    assert (one["false_positives"], one["misses"], one["switches"]) == (0, 1, 0)
+    assert one["mota"] == pytest.approx(14 / 15) and one["motp_overlap"] > 0.999
+
+
+def test_yolo_follows_its_rule(pictures, keys, tmp_path):
+    out = tmp_path / "labels_of_walk"
+    objects = [{"name": "a", "class": "square", "keys": keys}, {"name": "b", "class": "bus", "keys": {20: (1, 2, 30, 40)}}]
+    tracks = infopart.annotate(pictures, objects, seed=1, sides="forward", out=out, format="yolo")
+    assert (out / "classes.txt").read_text().split() == ["square", "bus"]
+    for number in range(1, 21):
+        file = out / "labels" / f"{number:04d}.txt"
+        rows = np.loadtxt(file, ndmin=2) if file.exists() and file.stat().st_size else np.empty((0, 5))
+        expected = [
+            [kind, (x + w / 2) / 160, (y + h / 2) / 120, w / 160, h / 120]
+            for kind, track in enumerate(tracks)
+            for x, y, w, h in track.boxes[number - 1 : number]
+            if not np.isnan(x)
+        ]
+        np.testing.assert_allclose(rows, np.reshape(expected, (-1, 5)), atol=1e-5)
+
+
+def test_datumaro_reads_cvat(pictures, keys, tmp_path):
+    datumaro = pytest.importorskip("datumaro")
+    folder = tmp_path / "cvat"
+    folder.mkdir()
+    objects = [{"name": '<a> & "b"', "class": "square", "keys": keys}]
+    [track] = infopart.annotate(pictures, objects, seed=1, out=folder / "tracks.xml")
+    read = datumaro.Dataset.import_from(str(folder), "cvat")
+    labels = [label.name for label in read.categories()[datumaro.AnnotationType.label]]
+    assert labels == ["square"]
+    # Frames between key frames are interpolated by CVAT itself, so that only key frames are in the file.
+    seen = {int(item.attributes["frame"]): one for item in read for one in item.annotations}
+    assert 0 in seen and 9 in seen and max(seen) <= 15
+    for frame, one in seen.items():
+        if frame < 15:
+            np.testing.assert_allclose(one.get_bbox(), track.boxes[frame], atol=0.01)
