@@ -11,9 +11,9 @@ from pathlib import Path
 
 import cv2
 import numpy as np
-from mot_track import CLIPS, run
-from rivals import executable
-from sequences import PROJECT, data_folder, fail
+from mot_program import add_options, check, run
+from mot_track import CLIPS
+from sequences import PROJECT, fail
 
 PRESETS = ("paper", "default")
 
@@ -35,16 +35,13 @@ def main():
     add("--clips", nargs="+", metavar="NAME=VIDEO", help="videos [default: the data's five]")
     add("--width", type=int, default=256, help="of a frame, pixels [default: 256]")
     add("--out", type=Path, default=PROJECT / "docs/mot_track", help="the folder for NAME.jpg [default: docs/mot_track]")
-    add("--mot", type=Path, default=PROJECT / "target/release/mot", help="the program [default: target/release/mot]")
-    add("--data", help="the folder that holds video/ [default: INFOPART_DATA]")
-    options = parser.parse_args()
-    options.mot = executable(options.mot)
-    data = data_folder(options.data, ["video"])
+    add_options(parser, "video/")
+    options = check(parser.parse_args(), ["video"])
     options.out.mkdir(parents=True, exist_ok=True)
     for text in options.clips or CLIPS:
         name, _, files = text.partition("=")
         video = Path(files.partition(",")[0])
-        video = video if video.exists() else data / video
+        video = video if video.exists() else options.data / video
         with tempfile.TemporaryDirectory() as scratch:
             rows = [np.hstack(annotated(options, video, preset, Path(scratch) / preset)) for preset in PRESETS]
         path = options.out / f"{name}.jpg"

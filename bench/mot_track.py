@@ -5,7 +5,7 @@ MOG2 has varThreshold 16, its shadows are dropped, the mask is opened by 3 x 3 a
 close it), regions of at least 400 pixels are detections, and SORT (max_age 15, IoU 0.2) tracks them. With --reference, the path
 of abewley/sort's sort.py, that is the SORT; else it is `mot sort`, which gives the same tracks, and the rival's time is then
 without its tracker. Printed are MOTA, IDF1, HOTA (TrackEval's rules) and what they count, frames a second with decoding
-(the fastest of --runs, in turn), and, of the tracks themselves: jumps, steps from one report to the next in which the centre moves
+(the fastest of --runs, in turn), processor time a frame (likewise; all threads and the decoder's process), and, of the tracks themselves: jumps, steps from one report to the next in which the centre moves
 by more than 1.5 times the shorter side, and the share of steps that halve or double an area.
 
 Needs `cargo build --release --workspace` and bench/requirements.txt (--reference also bench/requirements-sort.txt). A clip is
@@ -13,9 +13,7 @@ NAME=VIDEO or NAME=VIDEO,GT, where VIDEO may be images, DIR/%%04d.jpg; the usual
 """
 
 import argparse
-import json
-import os
-import subprocess
+import resource
 import tempfile
 import time
 from collections import defaultdict
@@ -23,8 +21,9 @@ from pathlib import Path
 
 import cv2
 import numpy as np
-from rivals import executable, table
-from sequences import PROJECT, data_folder, fail
+from mot_program import add_options, check, run, scores
+from rivals import table
+from sequences import fail
 
 CLIPS = [
     "PETS09-S2L1=video/view1_vtest.avi,mot/PETS09-S2L1/gt/gt.txt", "atrium=video/atrium.mp4",
@@ -53,8 +52,8 @@ def detections_of(video, closing):
 
 
 def run_rival(options, reference, video, closing, out):
-    """Writes the rival's tracks; gives frames and seconds."""
-    start, frames = time.perf_counter(), 0
+    """Writes the rival's tracks; gives frames, and seconds by the clock and of the processors."""
+    start, frames = clocks(), 0
     rows = []
     tracker = reference.Sort(max_age=15, min_hits=3, iou_threshold=0.2) if reference else None
     for found in detections_of(video, closing):
@@ -63,7 +62,7 @@ def run_rival(options, reference, video, closing, out):
         for x1, y1, x2, y2, identity in boxes:
             identity = int(identity) if tracker else -1
             rows.append(f"{frames},{identity},{x1 + 1:.2f},{y1 + 1:.2f},{x2 - x1:.2f},{y2 - y1:.2f},1,-1,-1,-1\n")
-    seconds = time.perf_counter() - start
+    seconds = since(start)
     if not frames:
         fail(f"{video}: OpenCV reads no frame of it")
     out.write_text("".join(rows))
@@ -75,19 +74,22 @@ def run_rival(options, reference, video, closing, out):
     return frames, seconds
 
 
-def run(options, words):
-    done = subprocess.run([options.mot, *map(str, words)], capture_output=True, text=True)
-    if done.returncode != 0:
-        fail(f"{options.mot} failed with exit code {done.returncode}: {done.stderr.strip()}")
-    return done
+def clocks():
+    """Seconds by the clock, and those that the processors gave to this process and those it waited for."""
+    spent = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
+    return np.array([time.perf_counter(), sum(one.ru_utime + one.ru_stime for one in spent)])
+
+
+def since(start):
+    return clocks() - start
 
 
 def run_ours(options, video, out):
-    start = time.perf_counter()
+    start = clocks()
     # OpenCV reads images by a pattern, `mot track` by their folder.
     images = video.parent if "%" in video.name else video
     run(options, ["track", images, "--out", out, *options.flags.split()])
-    return time.perf_counter() - start
+    return since(start)
 
 
 def steadiness(path):
@@ -106,13 +108,7 @@ def steadiness(path):
     return jumps, leaps, steps
 
 
-def scores(options, truth, out):
-    scored = out.with_suffix(".json")
-    run(options, ["score", truth, out, "--rules", "trackeval", "--json", scored])
-    return json.loads(scored.read_text())["sequences"][0]["scores"]
-
-
-def row(options, clip, name, truth, out, speed):
+def row(options, clip, name, truth, out, seconds_a_frame):
     jumps, leaps, steps = steadiness(out)
     cells = ["-"] * 6
     if truth:
@@ -120,7 +116,8 @@ def row(options, clip, name, truth, out, speed):
         percent = [f"{100 * (one[key] or 0):.1f}" for key in ("mota", "idf1", "hota")]
         cells = percent + [str(one[key]) for key in ("switches", "false_positives", "misses")]
     share = f"{100 * leaps / max(steps, 1):.2f} %"
-    return [clip, name, *cells, f"{speed:.1f}", str(jumps), share]
+    clock, processors = seconds_a_frame
+    return [clip, name, *cells, f"{1 / clock:.1f}", f"{1000 * processors:.2f}", str(jumps), share]
 
 
 def clips(options):
@@ -144,13 +141,9 @@ def arguments():
     add("--flags", default="", metavar="'WORDS'", help="more flags of mot track, as one word")
     add("--reference", type=Path, help="abewley/sort's sort.py [default: `mot sort`, untimed]")
     add("--runs", type=int, default=1, help="runs of each, of which the fastest counts [default: 1]")
-    add("--mot", type=Path, default=PROJECT / "target/release/mot", help="the program [default: target/release/mot]")
-    add("--data", help="the folder that holds video/ and mot/ [default: INFOPART_DATA]")
+    add_options(parser, "video/ and mot/")
     add("--keep", type=Path, help="a folder for the tracks")
-    options = parser.parse_args()
-    options.mot = executable(options.mot)
-    options.data = data_folder(options.data, ["video"])
-    return options
+    return check(parser.parse_args(), ["video"])
 
 
 def main():
@@ -173,8 +166,8 @@ def main():
                     frames, seconds = run_rival(options, reference, video, closing, outs[name])
                     times[name].append(seconds)
             for name, out in outs.items():
-                rows.append(row(options, clip, name, truth, out, frames / min(times[name])))
-    print(table(["clip", "", "MOTA", "IDF1", "HOTA", "IDs", "FP", "FN", "frames/s", "jumps", "leaps"], rows))
+                rows.append(row(options, clip, name, truth, out, np.min(times[name], axis=0) / frames))
+    print(table(["clip", "", "MOTA", "IDF1", "HOTA", "IDs", "FP", "FN", "frames/s", "CPU ms", "jumps", "leaps"], rows))
 
 
 if __name__ == "__main__":

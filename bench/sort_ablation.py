@@ -7,49 +7,32 @@ those rows. Needs `cargo build --release --workspace`.
 """
 
 import argparse
-import json
-import os
-import subprocess
 import tempfile
 from pathlib import Path
 
-from sequences import PROJECT, data_folder, fail
+from mot_program import add_options, check, detected_sequences, run, scores
 
 FILTERS = ("kalman", "ekf", "ukf", "pf")
 
 
-def run(command):
-    done = subprocess.run([str(word) for word in command], capture_output=True, text=True)
-    if done.returncode != 0:
-        fail(f"{command[0]} {command[1]} ended with {done.returncode}: {done.stderr.strip()}")
-
-
-def scores(program, folder, flags, scratch):
-    result, report = scratch / "result.txt", scratch / "scores.json"
-    run([program, "sort", folder / "det/det.txt", *flags, "--out", result])
-    run([program, "score", folder / "gt/gt.txt", result, "--json", report])
-    return json.loads(report.read_text())["sequences"][0]["scores"]
+def scores_of(options, folder, flags, scratch):
+    result = scratch / "result.txt"
+    run(options, ["sort", folder / "det/det.txt", *flags, "--out", result])
+    return scores(options, folder / "gt/gt.txt", result, rules="motmetrics")
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     add = parser.add_argument
-    add("--mot", type=Path, default=PROJECT / "target/release/mot", help="the program [default: target/release/mot]")
-    add("--data", help="the folder that holds mot/ [default: INFOPART_DATA]")
+    add_options(parser, "mot/")
     add("--frames", nargs="*", default=[], metavar="NAME=PATH", help="the frames of a sequence")
     add("--max-age", nargs="*", type=int, default=[1, 5, 30], metavar="FRAMES", help="[default: 1 5 30]")
     add("--seeds", type=int, default=5, help="seeds of the particle filter, whose rows are means [default: 5]")
-    options = parser.parse_args()
+    options = check(parser.parse_args())
     frames = dict(given.split("=", 1) for given in options.frames)
-    folders = [path.parent.parent for path in sorted(data_folder(options.data, ["mot"]).glob("mot/*/gt/gt.txt"))]
-    if not folders:
-        fail("no mot/SEQ/gt/gt.txt: give the folder that holds mot/ with --data")
-    options.mot = options.mot.resolve()
-    if not os.access(options.mot, os.X_OK):
-        fail(f"no program at {options.mot}: run `cargo build --release --workspace`, or give its path with --mot")
     print("sequence        noise         filter  max-age  colours   IDF1  IDSW    FM   MOTA   HOTA")
     with tempfile.TemporaryDirectory() as scratch:
-        for folder in folders:
+        for folder in detected_sequences(options):
             for noise in ("reference", "proportional"):
                 for name in FILTERS:
                     for age in options.max_age:
@@ -60,7 +43,7 @@ def main():
 def row(options, folder, noise, name, age, frames, scratch):
     flags = ["--noise", noise, "--filter", name, "--max-age", age] + (["--frames", frames] if frames else [])
     seeds = range(1, options.seeds + 1) if name == "pf" else [1]
-    found = [scores(options.mot, folder, [*flags, "--seed", seed], scratch) for seed in seeds]
+    found = [scores_of(options, folder, [*flags, "--seed", seed], scratch) for seed in seeds]
     mean = lambda key: sum(one[key] for one in found) / len(found)
     print(
         f"{folder.name:15} {noise:13} {name:7} {age:7}  {'on' if frames else 'off':7} {100 * mean('idf1'):6.1f}"

@@ -1,6 +1,6 @@
 //! Many objects: where a single-object tracker gets its first box from, and how tracks of many objects are judged.
 //!
-//! [`tracking`] follows what moves before a static camera, [`drawing`] shows it, and
+//! [`tracking`] and [`objects`] follow what moves before a static camera, `drawing` (feature `render`) shows it, and
 //! [`comparison`] says how well each filter predicted, with a [`line_plot`].
 //! [`sort`] tracks given detections, with the filters of [`motion`] and, if there are frames, the colours of [`appearance`].
 //! [`motchallenge`] reads and writes MOTChallenge text, [`scoring`] judges a result against the ground truth exactly as
@@ -11,6 +11,7 @@ pub mod appearance;
 pub mod assignment;
 pub mod camera_motion;
 pub mod comparison;
+#[cfg(feature = "render")]
 pub mod drawing;
 pub mod grid;
 pub mod line_plot;

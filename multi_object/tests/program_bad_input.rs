@@ -30,7 +30,7 @@ fn detections_that_cannot_be_used_are_named_by_file_and_line() {
         ("2,-1,10,10,inf,9,0.9\n", ["line 2", "the width is \"inf\""]),
         ("0,-1,10,10,5,9,0.9\n", ["line 2", "counts frames from 1"]),
         ("2,-1,10,10,1e30,9,0.9\n", ["line 2", "fits no picture"]),
-        ("2,-1,10,10,1e308,1e308,0.9\n", ["line 2", "fits no picture"]),
+        ("2,-1,10,10,1e308,1e308,0.9\n", ["line 2", "1e308 x 1e308 at 10.0, 10.0 fits no picture"]),
         ("2,-1,1e30,10,5,9,0.9\n", ["line 2", "fits no picture"]),
         ("3,-1,10,10,5,9,0.9\n2,-1,10,10,5,9,0.9\n", ["line 3", "frame 2 comes after frame 3"]),
     ] {

@@ -1,4 +1,5 @@
-"""InfoPart: a single-object visual tracker with the calls of OpenCV's.
+"""InfoPart: a single-object visual tracker with the calls of OpenCV's; `Sort` tracks many from a detector's
+boxes, `annotate` gives a box in every frame from a few that are drawn.
 
     import cv2, infopart
 
@@ -14,7 +15,12 @@ Boxes are (x, y, w, h) in pixels, the first pixel being 0. Frames are numpy arra
 """
 
 from ._infopart import VERSION as __version__
+from ._annotate import Annotator, ObjectTrack, Place, annotate
+from ._sort import Sort, TrackedBox
 from ._track import Sequence, open_sequence, track
 from ._tracker import Estimate, Tracker, parameters
 
-__all__ = ["Estimate", "Sequence", "Tracker", "__version__", "open_sequence", "parameters", "track"]
+__all__ = [
+    "Annotator", "Estimate", "ObjectTrack", "Place", "Sequence", "Sort", "TrackedBox", "Tracker", "__version__", "annotate",
+    "open_sequence", "parameters", "track",
+]

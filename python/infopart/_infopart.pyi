@@ -4,7 +4,7 @@ import numpy as np
 import numpy.typing as npt
 from typing_extensions import Self, disjoint_base
 
-__all__ = ["NativeSequence", "NativeTracker", "VERSION", "parameters"]
+__all__ = ["NativeAnnotator", "NativeSequence", "NativeSort", "NativeTracker", "VERSION", "parameters"]
 
 VERSION: str
 
@@ -25,6 +25,38 @@ class NativeTracker:
     def config_json(self) -> str: ...
     def save(self) -> bytes: ...
     def close(self) -> None: ...
+
+@disjoint_base
+class NativeAnnotator:
+    def __new__(cls, path: str, target: int | None, memory: int, toml: str, preset: str, threads: int) -> Self: ...
+    @property
+    def frames(self) -> int: ...
+    @property
+    def size(self) -> tuple[int, int]: ...
+    def tracks(
+        self, keys: str, forward_only: bool, out: str | None, format: str | None
+    ) -> list[tuple[str, str, npt.NDArray[np.float64], list[tuple[int, int, int, float]]]]: ...
+
+@disjoint_base
+class NativeSort:
+    def __new__(
+        cls,
+        method: str,
+        max_age: int | None,
+        min_hits: int | None,
+        min_overlap: float | None,
+        high: float | None,
+        low: float | None,
+        camera_motion: bool,
+        rgb: bool,
+    ) -> Self: ...
+    def step(
+        self,
+        boxes: npt.NDArray[np.float64],
+        scores: npt.NDArray[np.float64],
+        classes: npt.NDArray[np.int64] | None,
+        frame: npt.NDArray[np.uint8] | None,
+    ) -> list[tuple[int, tuple[float, float, float, float], int | None, int]]: ...
 
 @final
 class NativeSequence:

@@ -60,11 +60,11 @@ class Tracker(_infopart.NativeTracker):
             parameters["seed"] = seed
         if isinstance(threads, bool) or not isinstance(threads, int) or not 1 <= threads <= 1024:
             raise ValueError(f"threads: it is {threads!r}; give a whole number from 1 on")
-        given = _to_toml(parameters, preset)
+        given = to_toml(parameters, preset)
         if config is None:
             return super().__new__(cls, given, preset, threads, bool(rgb))
         try:
-            return super().__new__(cls, _over(_file_text(config), given, parameters), preset, threads, bool(rgb))
+            return super().__new__(cls, over_file(config, given, parameters), preset, threads, bool(rgb))
         except ValueError as error:
             raise ValueError(f"config {os.fspath(config)}: {error}") from None
 
@@ -126,13 +126,14 @@ def _file_text(path: str | os.PathLike[str]) -> str:
         raise ValueError(f"config {os.fspath(path)}: {error}; give a TOML file (`infopart config` prints one)") from None
 
 
-def _over(text: str, given: str, parameters: dict[str, Any]) -> str:
-    """The lines of a file but for those of keys that are given besides."""
-    lines = [line for line in text.splitlines() if line.split("=")[0].strip() not in parameters]
+def over_file(path: str | os.PathLike[str], given: str, parameters: dict[str, Any]) -> str:
+    """The TOML text ``given`` of parameters, over the lines of a file but for those of keys that are given besides."""
+    lines = [line for line in _file_text(path).splitlines() if line.split("=")[0].strip() not in parameters]
     return "\n".join(lines) + "\n" + given
 
 
-def _to_toml(given: dict[str, Any], preset: str) -> str:
+def to_toml(given: dict[str, Any], preset: str) -> str:
+    """Parameters as a TOML text; an unknown one is refused with the nearest name."""
     known = parameters(preset)
     return "".join(f"{name} = {_literal(name, value, known)}\n" for name, value in given.items())
 

@@ -4,15 +4,21 @@
 
 use pyo3::prelude::*;
 
+mod annotate;
 mod frame;
 mod sequence;
+mod sort;
 mod tracker;
 
 /// The native half of the package `infopart`.
 #[pymodule]
 mod _infopart {
     #[pymodule_export]
+    use crate::annotate::NativeAnnotator;
+    #[pymodule_export]
     use crate::sequence::NativeSequence;
+    #[pymodule_export]
+    use crate::sort::NativeSort;
     #[pymodule_export]
     use crate::tracker::{NativeTracker, parameters};
 

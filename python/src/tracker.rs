@@ -8,7 +8,7 @@ use std::{
 use infopart::{
     geometry::Rect,
     parallel::Threads,
-    tracker::{Estimate, InfoPart, Parameters, TrackError, Tracker},
+    tracker::{CheckedParameters, Estimate, InfoPart, Parameters, TrackError, Tracker},
 };
 use numpy::{PyArray2, ndarray::Array2};
 use pyo3::{
@@ -80,11 +80,7 @@ impl NativeTracker {
     fn new(toml: &str, preset: &str, threads: usize, rgb: bool, saved: Option<&[u8]>) -> PyResult<Self> {
         let mut tracker = match saved {
             Some(bytes) => InfoPart::load(bytes).map_err(value_error)?,
-            None => {
-                let base = Parameters::preset(preset).map_err(value_error)?;
-                let parameters = Parameters::from_toml(toml, base).map_err(value_error)?;
-                InfoPart::new(parameters.check().map_err(value_error)?)
-            }
+            None => InfoPart::new(checked(toml, preset)?),
         };
         tracker.set_threads(Threads::Calling);
         Ok(Self { work: Mutex::new(Some(Work { tracker, pool: None })), rgb, threads })
@@ -239,6 +235,15 @@ impl NativeTracker {
     }
 }
 
+/// The parameters of a preset with those of a TOML text over them.
+///
+/// # Errors
+/// ValueError, naming the parameter.
+pub fn checked(toml: &str, preset: &str) -> PyResult<CheckedParameters> {
+    let base = Parameters::preset(preset).map_err(value_error)?;
+    Parameters::from_toml(toml, base).map_err(value_error)?.check().map_err(value_error)
+}
+
 /// The parameters of a preset as JSON.
 #[pyfunction]
 pub fn parameters(preset: &str) -> PyResult<String> {
@@ -284,7 +289,8 @@ fn rect_of(given: &Bound<'_, PyAny>) -> PyResult<Rect> {
     }
 }
 
-fn value_error(error: impl std::fmt::Display) -> PyErr {
+/// A ValueError that says what an error says.
+pub fn value_error(error: impl std::fmt::Display) -> PyErr {
     PyValueError::new_err(error.to_string())
 }
 

@@ -121,8 +121,27 @@ fn apply_row(
     gaussians: &mut [Gaussian],
     mask: &mut [u8],
 ) {
+    // The usual numbers of components are known where the loops over them are compiled, which unrolls them.
+    match weights.len() / mask.len() {
+        3 => apply_row_of(3, update, frame, y, guide, weights, gaussians, mask),
+        5 => apply_row_of(5, update, frame, y, guide, weights, gaussians, mask),
+        k => apply_row_of(k, update, frame, y, guide, weights, gaussians, mask),
+    }
+}
+
+#[inline(always)]
+#[expect(clippy::too_many_arguments, reason = "what its caller has, and one constant")]
+fn apply_row_of(
+    k: usize,
+    update: &Update,
+    frame: FrameView<'_>,
+    y: usize,
+    guide: &[Learning],
+    weights: &mut [f32],
+    gaussians: &mut [Gaussian],
+    mask: &mut [u8],
+) {
     let [red, green, blue] = frame.format().rgb_offsets();
-    let k = weights.len() / mask.len();
     let pixels = frame.row(y).chunks_exact(frame.format().bytes_per_pixel());
     let mixtures = weights.chunks_exact_mut(k).zip(gaussians.chunks_exact_mut(k));
     for (x, ((pixel, (weights, gaussians)), out)) in pixels.zip(mixtures).zip(mask).enumerate() {

@@ -78,6 +78,7 @@ impl Update {
     }
 
     /// Steps 1 to 7: learns from `colour` and gives its mask value. `weights` and `gaussians` are the pixel's mixture.
+    #[inline(always)]
     pub fn apply(
         &self,
         colour: [f32; 3],
@@ -104,6 +105,7 @@ impl Update {
     }
 
     /// Steps 6 and 7 for a colour that the component at `place` explains.
+    #[inline(always)]
     fn label(&self, colour: &[f32; 3], place: usize, weights: &[f32], gaussians: &[Gaussian]) -> u8 {
         let background = self.background_components(weights);
         if place < background {
@@ -116,6 +118,7 @@ impl Update {
     }
 
     /// Step 1. Components without weight are not in use; none in use comes after them.
+    #[inline(always)]
     fn explaining(&self, colour: &[f32; 3], weights: &[f32], gaussians: &[Gaussian]) -> Option<usize> {
         let in_use = weights.iter().zip(gaussians).take_while(|(weight, _)| **weight > 0.0);
         in_use
@@ -124,6 +127,7 @@ impl Update {
     }
 
     /// Steps 2 and 3.
+    #[inline(always)]
     fn reinforce(&self, k: usize, colour: &[f32; 3], weights: &mut [f32], gaussians: &mut [Gaussian]) {
         for weight in weights.iter_mut() {
             *weight *= 1.0 - self.rate;
@@ -150,6 +154,7 @@ impl Update {
     }
 
     /// Step 6: how many components, from the first on, are background.
+    #[inline(always)]
     fn background_components(&self, weights: &[f32]) -> usize {
         let mut sum = 0.0;
         let enough = weights.iter().position(|weight| {
@@ -176,6 +181,7 @@ impl Update {
 }
 
 /// Step 5: moves the component at `k`, the only one out of order, to where it belongs; gives its new place.
+#[inline(always)]
 fn bring_into_order(mut k: usize, weights: &mut [f32], gaussians: &mut [Gaussian]) -> usize {
     let order = |k: usize, weights: &[f32], gaussians: &[Gaussian]| {
         weights[k] * weights[k] / gaussians[k].total_variance().max(f32::MIN_POSITIVE)

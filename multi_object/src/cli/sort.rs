@@ -17,8 +17,8 @@ use multi_object::{
     camera_motion::{CameraMotion, CameraWatch},
     motchallenge::{Detection, TrackRow, read_detections, row_text_of_class},
     sort::{
-        BoxNoise, BoxTracker, ByteParameters, ByteTracker, OcParameters, OcTracker, ReportedBox, ScoredBox,
-        Sort, SortParameters,
+        BoxFilterParameters, BoxNoise, BoxTracker, ByteParameters, ByteTracker, OcParameters, OcTracker,
+        ReportedBox, ScoredBox, Sort, SortParameters,
     },
 };
 
@@ -114,9 +114,7 @@ impl SortArgs {
             max_age: self.max_age.unwrap_or(usual.max_age),
             min_hits: self.min_hits,
             min_overlap,
-            filter: self.filter.kind(),
-            filter_options: self.filter.options()?,
-            noise: self.noise(),
+            filter: self.box_filter()?,
             appearance_weight: self.appearance,
         })
     }
@@ -136,9 +134,7 @@ impl SortArgs {
             low: self.low,
             min_overlap: self.min_overlap(usual.min_overlap)?,
             max_age: self.max_age.unwrap_or(usual.max_age),
-            filter: self.filter.kind(),
-            filter_options: self.filter.options()?,
-            noise: self.noise(),
+            filter: self.box_filter()?,
             ..usual
         })
     }
@@ -154,9 +150,7 @@ impl SortArgs {
             min_overlap: self.min_overlap(usual.min_overlap)?,
             min_hits: self.min_hits,
             max_age: self.max_age.unwrap_or(usual.max_age),
-            filter: self.filter.kind(),
-            filter_options: self.filter.options()?,
-            noise: self.noise(),
+            filter: self.box_filter()?,
             ..usual
         })
     }
@@ -171,11 +165,12 @@ impl SortArgs {
         Ok(())
     }
 
-    fn noise(&self) -> BoxNoise {
-        match self.noise {
+    fn box_filter(&self) -> Result<BoxFilterParameters> {
+        let noise = match self.noise {
             NoiseArg::Reference => BoxNoise::Reference,
             NoiseArg::Proportional => BoxNoise::Proportional,
-        }
+        };
+        Ok(BoxFilterParameters { kind: self.filter.kind(), options: self.filter.options()?, noise })
     }
 
     fn min_overlap(&self, usual: f64) -> Result<f64> {

@@ -90,7 +90,7 @@ pub enum RowProblem {
     },
     /// A box that no picture holds.
     #[error(
-        "a box of {width} x {height} at {x}, {y} fits no picture: coordinates must be within 10 million pixels and the area above 0; \
+        "a box of {width:?} x {height:?} at {x:?}, {y:?} fits no picture: coordinates must be within 10 million pixels and the area above 0; \
          correct or remove the row"
     )]
     Absurd {

@@ -5,11 +5,10 @@ use std::{collections::HashMap, fs, path::Path};
 use infopart::geometry::Rect;
 
 use super::{Annotation, Detection, MotError, RowProblem, TrackRow};
+use crate::sort::is_trackable;
 
 /// Frames beyond this are taken for a mistake: nothing holds so many.
 const MAX_FRAME: f64 = 1e8;
-/// Pixels beyond this are taken for a mistake: no picture has so many in a row, and areas and their squares stay exact enough.
-const MAX_PIXEL: f64 = 1e7;
 
 /// Reads ground truth: the rows whose confidence is not 0, as MOT15 has it (-1 is none given). Rows stand in any order.
 ///
@@ -191,7 +190,7 @@ fn box_of(fields: &[&str]) -> Result<Rect, RowProblem> {
     if !read.is_proper() {
         return Err(RowProblem::Size { width, height });
     }
-    if [x, y, width, height].iter().any(|value| value.abs() > MAX_PIXEL) || !read.area().is_normal() {
+    if !is_trackable(&read) {
         return Err(RowProblem::Absurd { x, y, width, height });
     }
     Ok(read)

@@ -33,7 +33,8 @@ pub(super) struct CellMask {
 pub(super) struct Foreground {
     model: BackgroundModel,
     parameters: CheckedObjectParameters,
-    averaged: Vec<u8>,
+    averager: Averager,
+    majority: Majority,
     mask: CellMask,
 }
 
@@ -42,7 +43,8 @@ impl Foreground {
         Self {
             model: BackgroundModel::new(parameters.background()),
             parameters: parameters.clone(),
-            averaged: Vec::new(),
+            averager: Averager::default(),
+            majority: Majority::default(),
             mask: CellMask::default(),
         }
     }
@@ -55,14 +57,17 @@ impl Foreground {
     pub(super) fn apply(&mut self, frame: FrameView<'_>, guide: &[Learning]) -> Result<f64, BackgroundError> {
         let side = cell_side(frame.width(), frame.height());
         let (columns, rows) = (frame.width() / side, frame.height() / side);
-        average(frame, side, columns, rows, &mut self.averaged);
+        if columns == 0 || rows == 0 {
+            return Err(BackgroundError::TooLarge { width: frame.width(), height: frame.height() });
+        }
+        let averaged = self.averager.average(frame, side, columns, rows);
         // The buffer was made for this size.
-        let Ok(view) = FrameView::new(&self.averaged, columns, rows, 3 * columns, PixelFormat::Rgb) else {
+        let Ok(view) = FrameView::new(averaged, columns, rows, 3 * columns, PixelFormat::Rgb) else {
             return Err(BackgroundError::TooLarge { width: columns, height: rows });
         };
         let raw = self.model.apply_guided(view, guide)?;
         self.mask.side = side;
-        let foreground = majority(raw, &mut self.mask.cells);
+        let foreground = self.majority.clean(raw, &mut self.mask.cells);
         if let Some(clean_up) = self.parameters.clean_up(side) {
             self.mask.cells = MaskCleaner::new(clean_up).clean(&self.mask.cells);
         }
@@ -78,65 +83,118 @@ pub(super) fn cell_side(width: usize, height: usize) -> usize {
     (1..).find(|side| (width / side) * (height / side) <= MOST_CELLS).unwrap_or(1)
 }
 
-/// Step 1. Pixels beyond the last whole cell are left out.
-fn average(frame: FrameView<'_>, side: usize, columns: usize, rows: usize, averaged: &mut Vec<u8>) {
-    let (bytes, offsets) = (frame.format().bytes_per_pixel(), frame.format().rgb_offsets());
-    averaged.clear();
-    averaged.reserve(3 * columns * rows);
-    let mut sums = vec![[0u32; 3]; columns];
-    let area = (side * side) as u32;
-    for row in 0..rows {
-        sums.fill([0; 3]);
-        for y in row * side..(row + 1) * side {
-            let line = &frame.row(y)[..columns * side * bytes];
-            for (sum, cell) in sums.iter_mut().zip(line.chunks_exact(side * bytes)) {
-                for pixel in cell.chunks_exact(bytes) {
-                    for (sum, offset) in sum.iter_mut().zip(offsets) {
-                        *sum += u32::from(pixel[offset]);
-                    }
+/// Step 1, in buffers that stay.
+#[derive(Debug, Default)]
+struct Averager {
+    /// The sums of a row of cells, down each column of a channel.
+    sums: Vec<u32>,
+    /// Red, green and blue of each cell, row by row.
+    averaged: Vec<u8>,
+}
+
+impl Averager {
+    /// The cells' means. Pixels beyond the last whole cell are left out.
+    fn average(&mut self, frame: FrameView<'_>, side: usize, columns: usize, rows: usize) -> &[u8] {
+        let bytes = frame.format().bytes_per_pixel();
+        let used = columns * side * bytes;
+        self.averaged.resize(3 * columns * rows, 0);
+        self.sums.resize(used, 0);
+        for (row, cells) in self.averaged.chunks_exact_mut(3 * columns).enumerate() {
+            self.sums.fill(0);
+            for y in row * side..(row + 1) * side {
+                for (sum, value) in self.sums.iter_mut().zip(&frame.row(y)[..used]) {
+                    *sum += u32::from(*value);
                 }
             }
+            let channels = frame.format().rgb_offsets();
+            // The usual cases have their sizes known, so that their loops are unrolled.
+            match (bytes, side) {
+                (3, 1) => sum_across(&self.sums, 3, 1, channels, cells),
+                (3, 2) => sum_across(&self.sums, 3, 2, channels, cells),
+                (3, 4) => sum_across(&self.sums, 3, 4, channels, cells),
+                _ => sum_across(&self.sums, bytes, side, channels, cells),
+            }
         }
-        averaged.extend(sums.iter().flatten().map(|sum| ((sum + area / 2) / area) as u8));
+        &self.averaged
     }
 }
 
-/// Step 3; gives the raw foreground's cells. Beyond the border is no foreground, and the cells there are fewer.
-fn majority(raw: &GrayImage, cleaned: &mut GrayImage) -> usize {
-    let (width, height) = (raw.width() as usize, raw.height() as usize);
-    if cleaned.dimensions() != raw.dimensions() {
-        *cleaned = GrayImage::new(raw.width(), raw.height());
-    }
-    let is_foreground = |row: usize, x: usize| u8::from(raw.as_raw()[row * width + x] == FOREGROUND);
-    // How many of three cells across, for each row.
-    let across = |row: usize, counts: &mut Vec<u8>| {
-        counts.clear();
-        counts.extend((0..width).map(|x| {
-            let left = if x > 0 { is_foreground(row, x - 1) } else { 0 };
-            let right = if x + 1 < width { is_foreground(row, x + 1) } else { 0 };
-            left + is_foreground(row, x) + right
-        }));
-    };
-    let mut total = 0;
-    let (mut above, mut here, mut below) = (vec![0; width], Vec::new(), Vec::new());
-    across(0, &mut here);
-    for y in 0..height {
-        if y + 1 < height {
-            across(y + 1, &mut below)
-        } else {
-            below.clear();
-            below.resize(width, 0)
+/// The means of a row of cells from the sums down their columns.
+#[inline(always)]
+fn sum_across(sums: &[u32], bytes: usize, side: usize, channels: [usize; 3], cells: &mut [u8]) {
+    let area = (side * side) as u32;
+    for (cell, sums) in cells.chunks_exact_mut(3).zip(sums.chunks_exact(side * bytes)) {
+        for (mean, channel) in cell.iter_mut().zip(channels) {
+            let sum: u32 = (0..side).map(|pixel| sums[pixel * bytes + channel]).sum();
+            *mean = ((sum + area / 2) / area) as u8;
         }
-        for x in 0..width {
-            total += usize::from(is_foreground(y, x));
-            let is_border = x == 0 || y == 0 || x + 1 == width || y + 1 == height;
-            let needed = if is_border { 3 } else { 5 };
-            (**cleaned)[y * width + x] = if above[x] + here[x] + below[x] >= needed { FOREGROUND } else { 0 };
-        }
-        std::mem::swap(&mut above, &mut here);
-        std::mem::swap(&mut here, &mut below);
     }
-    total
+}
+
+/// Step 3, in buffers that stay.
+#[derive(Debug, Default)]
+struct Majority {
+    /// For each cell of three rows whether it is foreground, with a cell of none at both ends.
+    rows: [Vec<u8>; 3],
+    /// The same, summed over the three rows.
+    down: Vec<u8>,
+}
+
+impl Majority {
+    /// Gives the raw foreground's cells. Beyond the border is no foreground, and the cells there are fewer.
+    fn clean(&mut self, raw: &GrayImage, cleaned: &mut GrayImage) -> usize {
+        let (width, height) = (raw.width() as usize, raw.height() as usize);
+        if cleaned.dimensions() != raw.dimensions() {
+            *cleaned = GrayImage::new(raw.width(), raw.height());
+        }
+        for row in self.rows.iter_mut().chain([&mut self.down]) {
+            row.clear();
+            row.resize(width + 2, 0);
+        }
+        let ([above, here, below], down) = (&mut self.rows, &mut self.down);
+        let mut rows = raw.chunks_exact(width);
+        mark(rows.next(), here);
+        let mut total = 0;
+        for (y, out) in cleaned.chunks_exact_mut(width).enumerate() {
+            mark(rows.next(), below);
+            total += here.iter().map(|&cell| usize::from(cell)).sum::<usize>();
+            for (sum, ((above, here), below)) in down.iter_mut().zip(above.iter().zip(&*here).zip(&*below)) {
+                *sum = above + here + below;
+            }
+            let is_foreground = |around: &[u8], needed: u8| match around[0] + around[1] + around[2] >= needed
+            {
+                true => FOREGROUND,
+                false => 0,
+            };
+            let needed = if y == 0 || y + 1 == height { NEEDED_AT_BORDER } else { NEEDED };
+            for (cell, around) in out.iter_mut().zip(down.windows(3)) {
+                *cell = is_foreground(around, needed);
+            }
+            for x in [0, width - 1] {
+                out[x] = is_foreground(&down[x..], NEEDED_AT_BORDER);
+            }
+            std::mem::swap(above, here);
+            std::mem::swap(here, below);
+        }
+        total
+    }
+}
+
+/// Cells of foreground around a cell, itself among them, that make it foreground; at the border.
+const NEEDED: u8 = 5;
+const NEEDED_AT_BORDER: u8 = 3;
+
+/// Marks the cells of a row of the raw mask; of none beyond the last.
+fn mark(raw: Option<&[u8]>, marks: &mut [u8]) {
+    let inner = marks.len() - 1;
+    match raw {
+        Some(raw) => {
+            for (mark, &cell) in marks[1..inner].iter_mut().zip(raw) {
+                *mark = u8::from(cell == FOREGROUND);
+            }
+        }
+        None => marks.fill(0),
+    }
 }
 
 impl CellMask {
@@ -178,17 +236,37 @@ mod tests {
         // 5 x 4 pixels, cells of 2: the fifth column is left out.
         let pixels: Vec<u8> = (0..20).map(|i| [10, 20, 30, 50, 255][i % 5]).collect();
         let frame = FrameView::new(&pixels, 5, 4, 5, PixelFormat::Gray).unwrap();
-        let mut averaged = Vec::new();
-        average(frame, 2, 2, 2, &mut averaged);
-        assert_eq!(averaged, [15, 15, 15, 40, 40, 40, 15, 15, 15, 40, 40, 40]);
+        let mut averager = Averager::default();
+        assert_eq!(averager.average(frame, 2, 2, 2), [15, 15, 15, 40, 40, 40, 15, 15, 15, 40, 40, 40]);
     }
 
     proptest! {
         #[test]
+        fn means_are_those_of_summing_each_cell_by_itself(
+            bytes in prop::collection::vec(any::<u8>(), 4 * 17 * 13), side in 1usize..=5, which in 0usize..5
+        ) {
+            use PixelFormat::*;
+            let format = [Gray, Rgb, Bgr, Rgba, Bgra][which];
+            let deep = format.bytes_per_pixel();
+            let frame = FrameView::new(&bytes[..deep * 17 * 13], 17, 13, deep * 17, format).unwrap();
+            let (columns, rows) = (17 / side, 13 / side);
+            let mut averager = Averager::default();
+            let averaged = averager.average(frame, side, columns, rows);
+            prop_assert_eq!(averaged.len(), 3 * columns * rows);
+            for (place, &mean) in averaged.iter().enumerate() {
+                let (cell, channel) = (place / 3, format.rgb_offsets()[place % 3]);
+                let (left, top) = (cell % columns * side, cell / columns * side);
+                let pixels = (top..top + side).flat_map(|y| (left..left + side).map(move |x| (x, y)));
+                let sum: usize = pixels.map(|(x, y)| usize::from(frame.row(y)[x * deep + channel])).sum();
+                prop_assert_eq!(usize::from(mean), (sum + side * side / 2) / (side * side));
+            }
+        }
+
+        #[test]
         fn a_cell_is_what_most_around_it_are(cells in prop::collection::vec(any::<bool>(), 9 * 7)) {
             let raw = GrayImage::from_fn(9, 7, |x, y| Luma([255 * u8::from(cells[(y * 9 + x) as usize])]));
             let mut cleaned = GrayImage::default();
-            let total = majority(&raw, &mut cleaned);
+            let total = Majority::default().clean(&raw, &mut cleaned);
             prop_assert_eq!(total, cells.iter().filter(|&&cell| cell).count());
             for (x, y, cell) in cleaned.enumerate_pixels() {
                 let around = |a: u32, most: u32| a.saturating_sub(1)..(a + 2).min(most);

@@ -2,11 +2,24 @@
 
 use infopart::{bayes::FilterError, geometry::Rect};
 
-use super::box_model::{BoxModel, MEASURED, STATE};
-use crate::{camera_motion::CameraMotion, motion::StateFilter};
+use super::box_model::{self, BoxModel, BoxNoise, MEASURED, STATE};
+use crate::{
+    camera_motion::CameraMotion,
+    motion::{FilterKind, FilterOptions, StateFilter},
+};
 
 /// What predicts a box.
 pub(super) type BoxFilter = StateFilter<BoxModel, STATE, MEASURED>;
+
+/// Pixels beyond this are taken for a mistake: no picture has so many in a row, and areas and their squares stay exact enough.
+const MOST_PIXELS: f64 = 1e7;
+
+/// Whether a tracker can take a box: finite, with sides above 0, within 10,000,000 pixels of the origin and no larger, and of an
+/// area that is a number.
+pub fn is_trackable(area: &Rect) -> bool {
+    let Rect { x, y, w, h } = *area;
+    area.is_proper() && [x, y, w, h].iter().all(|value| value.abs() <= MOST_PIXELS) && area.area().is_normal()
+}
 
 /// A detector's box.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,6 +43,85 @@ pub struct ReportedBox {
     pub class: Option<u32>,
     /// Index of its detection among those given for the frame, for whatever else is known of it.
     pub detection: usize,
+}
+
+/// What predicts the boxes of a tracker's tracks; by default the Kalman filter on the reference's noise.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BoxFilterParameters {
+    /// The filter.
+    pub kind: FilterKind,
+    /// How it runs.
+    pub options: FilterOptions,
+    /// How uncertain boxes are.
+    pub noise: BoxNoise,
+}
+
+impl Default for BoxFilterParameters {
+    fn default() -> Self {
+        Self { kind: FilterKind::Kalman, options: FilterOptions::default(), noise: BoxNoise::Reference }
+    }
+}
+
+/// What the tracks of every tracker of boxes have.
+#[derive(Debug)]
+pub(super) struct BoxTrack {
+    pub identity: u64,
+    pub filter: BoxFilter,
+    /// Where it is expected in this frame.
+    pub predicted: Rect,
+    pub class: Option<u32>,
+    /// The detection that it was last updated with.
+    pub detection: usize,
+    /// Frames since the last update; 0 if it was updated in this frame.
+    pub unseen: u32,
+}
+
+impl BoxTrack {
+    /// A track that starts with the detection of that index, of that box and class.
+    pub(super) fn new(
+        identity: u64,
+        detection: usize,
+        (seen, class): (&Rect, Option<u32>),
+        parameters: &BoxFilterParameters,
+    ) -> Result<Self, FilterError> {
+        let (model, belief) = BoxModel::starting(seen, parameters.noise)?;
+        let options = parameters.options.for_track(identity);
+        Ok(Self {
+            identity,
+            filter: StateFilter::new(parameters.kind, model, belief, options)?,
+            predicted: *seen,
+            class,
+            detection,
+            unseen: 0,
+        })
+    }
+
+    /// Predicts the next frame, in which it was not seen yet; whether what is predicted is a box.
+    pub(super) fn predict(&mut self) -> bool {
+        self.unseen += 1;
+        let is_alive = self.filter.predict().is_ok();
+        let prediction = self.believed_box().filter(|_| is_alive);
+        prediction.map(|area| self.predicted = area).is_some()
+    }
+
+    /// Takes the detection of that index.
+    pub(super) fn update(&mut self, detection: usize, seen: &Rect) {
+        // A measurement that the filter cannot take leaves its prediction.
+        let _ = self.filter.update(&box_model::measured(seen));
+        self.detection = detection;
+        self.unseen = 0;
+    }
+
+    /// The box that is believed in, if it is one.
+    pub(super) fn believed_box(&self) -> Option<Rect> {
+        box_model::box_of(&self.filter.belief().mean)
+    }
+
+    /// What is reported of it if it is at `tracked_box`.
+    pub(super) fn report(&self, tracked_box: Rect) -> ReportedBox {
+        let &Self { identity, class, detection, .. } = self;
+        ReportedBox { identity, tracked_box, class, detection }
+    }
 }
 
 /// A tracker of given boxes, a call a frame.

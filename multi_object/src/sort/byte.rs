@@ -29,16 +29,8 @@
 
 use infopart::{bayes::FilterError, geometry::Rect};
 
-use super::{
-    BoxFilter, BoxNoise, BoxTracker, ReportedBox, ScoredBox,
-    box_model::{self, BoxModel},
-};
-use crate::{
-    assignment::Assigner,
-    camera_motion::CameraMotion,
-    grid::Grid,
-    motion::{FilterKind, FilterOptions, StateFilter},
-};
+use super::{BoxFilterParameters, BoxTracker, ReportedBox, ScoredBox, box_model, boxes::BoxTrack};
+use crate::{assignment::Assigner, camera_motion::CameraMotion, grid::Grid};
 
 /// How ByteTrack works; the defaults are those of its paper, with its `match_thresh` of 0.9 as an overlap of 0.1.
 #[derive(Debug, Clone, PartialEq)]
@@ -58,11 +50,7 @@ pub struct ByteParameters {
     /// Frames that a track is kept without a detection.
     pub max_age: u32,
     /// What predicts a track.
-    pub filter: FilterKind,
-    /// How the filter runs.
-    pub filter_options: FilterOptions,
-    /// How uncertain boxes are.
-    pub noise: BoxNoise,
+    pub filter: BoxFilterParameters,
 }
 
 impl Default for ByteParameters {
@@ -75,24 +63,15 @@ impl Default for ByteParameters {
             enlarged: 0.5,
             min_overlap_low: 0.5,
             max_age: 30,
-            filter: FilterKind::Kalman,
-            filter_options: FilterOptions::default(),
-            noise: BoxNoise::Reference,
+            filter: BoxFilterParameters::default(),
         }
     }
 }
 
 #[derive(Debug)]
 struct Track {
-    identity: u64,
-    filter: BoxFilter,
-    predicted: Rect,
-    class: Option<u32>,
-    /// The detection that it was last updated with.
-    detection: usize,
+    common: BoxTrack,
     hits: u32,
-    /// Frames since the last update; 0 if it was updated in this frame.
-    unseen: u32,
 }
 
 /// The tracker.
@@ -119,16 +98,6 @@ impl ByteTracker {
         }
     }
 
-    /// Step 1.
-    fn predict(&mut self) {
-        self.tracks.retain_mut(|track| {
-            track.unseen += 1;
-            let is_alive = track.filter.predict().is_ok();
-            let prediction = box_model::box_of(&track.filter.belief().mean).filter(|_| is_alive);
-            prediction.map(|area| track.predicted = area).is_some()
-        });
-    }
-
     /// Steps 2 to 4, and the update of step 5; gives the detections that are left.
     fn pair(
         &mut self,
@@ -143,7 +112,7 @@ impl ByteTracker {
             Rect::new(area.x - enlarged * area.w, area.y - enlarged * area.h, w, h)
         };
         let costs = Grid::from_fn(seen.len(), tracks.len(), |row, column| {
-            let (one, track) = (&detections[seen[row]], &self.tracks[tracks[column]]);
+            let (one, track) = (&detections[seen[row]], &self.tracks[tracks[column]].common);
             let overlap = match enlarged > 0.0 {
                 true => grown(&one.area).overlap(&grown(&track.predicted)),
                 false => one.area.overlap(&track.predicted),
@@ -156,11 +125,8 @@ impl ByteTracker {
                 continue;
             }
             let track = &mut self.tracks[tracks[column]];
-            // A measurement that the filter cannot take leaves its prediction.
-            let _ = track.filter.update(&box_model::measured(&detections[seen[row]].area));
-            track.detection = seen[row];
+            track.common.update(seen[row], &detections[seen[row]].area);
             track.hits += 1;
-            track.unseen = 0;
             is_left[row] = false;
         }
         seen.into_iter().zip(is_left).filter_map(|(one, left)| left.then_some(one)).collect()
@@ -172,30 +138,18 @@ impl ByteTracker {
             return Ok(());
         }
         self.started += 1;
-        let (model, belief) = BoxModel::starting(&seen.area, self.parameters.noise)?;
-        let options = self.parameters.filter_options.for_track(self.started);
-        self.tracks.push(Track {
-            identity: self.started,
-            filter: StateFilter::new(self.parameters.filter, model, belief, options)?,
-            predicted: seen.area,
-            class: seen.class,
-            detection,
-            hits: 1,
-            unseen: 0,
-        });
+        let common =
+            BoxTrack::new(self.started, detection, (&seen.area, seen.class), &self.parameters.filter)?;
+        self.tracks.push(Track { common, hits: 1 });
         Ok(())
     }
 
     /// Step 7.
     fn report(&mut self) {
         let is_first = self.frames == 1;
-        let due = self.tracks.iter().filter(|track| track.unseen == 0 && (track.hits > 1 || is_first));
+        let due = self.tracks.iter().filter(|track| track.common.unseen == 0 && (track.hits > 1 || is_first));
         self.reported.clear();
-        self.reported.extend(due.filter_map(|track| {
-            let tracked_box = box_model::box_of(&track.filter.belief().mean)?;
-            let (identity, class, detection) = (track.identity, track.class, track.detection);
-            Some(ReportedBox { identity, tracked_box, class, detection })
-        }));
+        self.reported.extend(due.filter_map(|track| Some(track.common.report(track.common.believed_box()?))));
     }
 }
 
@@ -203,7 +157,7 @@ impl BoxTracker for ByteTracker {
     /// Steps 1 to 7.
     fn track(&mut self, detections: &[ScoredBox]) -> Result<&[ReportedBox], FilterError> {
         self.frames += 1;
-        self.predict();
+        self.tracks.retain_mut(|track| track.common.predict());
         let ByteParameters { high, low, min_overlap, enlarged, min_overlap_low, max_age, .. } =
             self.parameters;
         let with = |wanted: &dyn Fn(f64) -> bool| -> Vec<usize> {
@@ -214,13 +168,14 @@ impl BoxTracker for ByteTracker {
         let mut left = self.pair(detections, sure, &everyone, min_overlap, 0.0);
         if enlarged > 0.0 {
             let unseen: Vec<usize> =
-                (0..self.tracks.len()).filter(|&index| self.tracks[index].unseen > 0).collect();
+                (0..self.tracks.len()).filter(|&index| self.tracks[index].common.unseen > 0).collect();
             left = self.pair(detections, left, &unseen, min_overlap, enlarged);
         }
         let recent: Vec<usize> =
-            everyone.into_iter().filter(|&index| self.tracks[index].unseen == 1).collect();
+            everyone.into_iter().filter(|&index| self.tracks[index].common.unseen == 1).collect();
         self.pair(detections, unsure, &recent, min_overlap_low, 0.0);
-        self.tracks.retain(|track| track.unseen == 0 || (track.hits > 1 && track.unseen <= max_age));
+        self.tracks
+            .retain(|Track { common, hits }| common.unseen == 0 || (*hits > 1 && common.unseen <= max_age));
         for place in left {
             self.start(place, &detections[place])?;
         }
@@ -229,7 +184,7 @@ impl BoxTracker for ByteTracker {
     }
 
     fn move_camera(&mut self, motion: &CameraMotion) {
-        self.tracks.iter_mut().for_each(|track| box_model::move_camera(&mut track.filter, motion));
+        self.tracks.iter_mut().for_each(|track| box_model::move_camera(&mut track.common.filter, motion));
     }
 }
 

@@ -27,7 +27,6 @@ use crate::{
     assignment::Assigner,
     camera_motion::CameraMotion,
     grid::Grid,
-    motion::{FilterKind, FilterOptions, StateFilter},
 };
 
 mod association;
@@ -39,10 +38,9 @@ mod oc;
 mod tests;
 
 use association::Association;
-use box_model::BoxModel;
 pub use box_model::BoxNoise;
-use boxes::BoxFilter;
-pub use boxes::{BoxTracker, ReportedBox, ScoredBox};
+use boxes::{BoxFilter, BoxTrack};
+pub use boxes::{BoxFilterParameters, BoxTracker, ReportedBox, ScoredBox, is_trackable};
 pub use byte::{ByteParameters, ByteTracker};
 pub use oc::{OcParameters, OcTracker};
 
@@ -56,11 +54,7 @@ pub struct SortParameters {
     /// Least overlap of a detection and a prediction that are paired, in [0, 1].
     pub min_overlap: f64,
     /// What predicts a track.
-    pub filter: FilterKind,
-    /// How the filter runs.
-    pub filter_options: FilterOptions,
-    /// How uncertain boxes are.
-    pub noise: BoxNoise,
+    pub filter: BoxFilterParameters,
     /// What likeness of colours counts in the pairing, against overlap, in [0, 1); only where appearances are given.
     pub appearance_weight: f64,
 }
@@ -71,9 +65,7 @@ impl Default for SortParameters {
             max_age: 1,
             min_hits: 3,
             min_overlap: 0.3,
-            filter: FilterKind::Kalman,
-            filter_options: FilterOptions::default(),
-            noise: BoxNoise::Reference,
+            filter: BoxFilterParameters::default(),
             appearance_weight: 0.5,
         }
     }
@@ -92,14 +84,9 @@ pub struct Reported {
 
 #[derive(Debug)]
 struct Track {
-    identity: u64,
-    filter: BoxFilter,
-    /// The detection that it was last updated with.
-    detection: usize,
+    common: BoxTrack,
     /// Updates in a row.
     hit_streak: u32,
-    /// Frames since the last update; 0 if it was updated in this frame.
-    unseen: u32,
     appearance: Option<Appearance>,
 }
 
@@ -162,16 +149,12 @@ impl Sort {
         self.predicted.clear();
         let predicted = &mut self.predicted;
         self.tracks.retain_mut(|track| {
-            if track.filter.predict().is_err() {
-                return false;
-            }
-            if track.unseen > 0 {
+            if track.common.unseen > 0 {
                 track.hit_streak = 0;
             }
-            track.unseen += 1;
-            let prediction = box_model::box_of(&track.filter.belief().mean);
-            predicted.extend(prediction);
-            prediction.is_some()
+            let is_box = track.common.predict();
+            predicted.extend(is_box.then_some(track.common.predicted));
+            is_box
         });
     }
 
@@ -203,25 +186,18 @@ impl Sort {
     ) -> Result<(), FilterError> {
         for &(detection, track) in &self.association.pairs {
             let track = &mut self.tracks[track];
-            track.unseen = 0;
             track.hit_streak += 1;
-            track.detection = detection;
-            // A measurement that the filter cannot take leaves its prediction.
-            let _ = track.filter.update(&box_model::measured(&detections[detection]));
+            track.common.update(detection, &detections[detection]);
             if let (Some(known), Some(seen)) = (&mut track.appearance, appearances) {
                 known.follow(&seen[detection]);
             }
         }
         for &detection in &self.association.detections_left {
             self.started += 1;
-            let (model, belief) = BoxModel::starting(&detections[detection], self.parameters.noise)?;
-            let options = self.parameters.filter_options.for_track(self.started);
+            let seen = (&detections[detection], None);
             self.tracks.push(Track {
-                identity: self.started,
-                filter: StateFilter::new(self.parameters.filter, model, belief, options)?,
-                detection,
+                common: BoxTrack::new(self.started, detection, seen, &self.parameters.filter)?,
                 hit_streak: 0,
-                unseen: 0,
                 appearance: appearances.map(|seen| seen[detection].clone()),
             });
         }
@@ -234,15 +210,15 @@ impl Sort {
         self.reported.clear();
         for track in self.tracks.iter().rev() {
             let is_due = track.hit_streak >= min_hits || self.frames <= min_hits;
-            if track.unseen > 0 || !is_due {
+            if track.common.unseen > 0 || !is_due {
                 continue;
             }
-            if let Some(tracked_box) = box_model::box_of(&track.filter.belief().mean) {
-                let (identity, detection) = (track.identity, track.detection);
+            if let Some(tracked_box) = track.common.believed_box() {
+                let &BoxTrack { identity, detection, .. } = &track.common;
                 self.reported.push(Reported { identity, tracked_box, detection });
             }
         }
-        self.tracks.retain(|track| track.unseen <= max_age);
+        self.tracks.retain(|track| track.common.unseen <= max_age);
     }
 }
 
@@ -266,6 +242,6 @@ impl BoxTracker for Sort {
     }
 
     fn move_camera(&mut self, motion: &CameraMotion) {
-        self.tracks.iter_mut().for_each(|track| box_model::move_camera(&mut track.filter, motion));
+        self.tracks.iter_mut().for_each(|track| box_model::move_camera(&mut track.common.filter, motion));
     }
 }

@@ -20,16 +20,8 @@ use std::{collections::VecDeque, f64::consts::PI};
 
 use infopart::{bayes::FilterError, geometry::Rect};
 
-use super::{
-    BoxFilter, BoxNoise, BoxTracker, ReportedBox, ScoredBox,
-    box_model::{self, BoxModel},
-};
-use crate::{
-    assignment::Assigner,
-    camera_motion::CameraMotion,
-    grid::Grid,
-    motion::{FilterKind, FilterOptions, StateFilter},
-};
+use super::{BoxFilter, BoxFilterParameters, BoxTracker, ReportedBox, ScoredBox, box_model, boxes::BoxTrack};
+use crate::{assignment::Assigner, camera_motion::CameraMotion, grid::Grid};
 
 /// How OC-SORT works; the defaults are those of its authors.
 #[derive(Debug, Clone, PartialEq)]
@@ -47,11 +39,7 @@ pub struct OcParameters {
     /// Frames that a track is kept without a detection.
     pub max_age: u32,
     /// What predicts a track.
-    pub filter: FilterKind,
-    /// How the filter runs.
-    pub filter_options: FilterOptions,
-    /// How uncertain boxes are.
-    pub noise: BoxNoise,
+    pub filter: BoxFilterParameters,
 }
 
 impl Default for OcParameters {
@@ -63,21 +51,16 @@ impl Default for OcParameters {
             look_back: 3,
             min_hits: 3,
             max_age: 30,
-            filter: FilterKind::Kalman,
-            filter_options: FilterOptions::default(),
-            noise: BoxNoise::Reference,
+            filter: BoxFilterParameters::default(),
         }
     }
 }
 
 #[derive(Debug)]
 struct Track {
-    identity: u64,
-    filter: BoxFilter,
+    common: BoxTrack,
     /// The filter as predicted for the first frame of the gap at hand.
     before_gap: Option<BoxFilter>,
-    predicted: Rect,
-    class: Option<u32>,
     age: u32,
     last_seen: Rect,
     /// Age and box of the sights that a direction may be measured from, but for the first of all, as the authors have it.
@@ -86,10 +69,6 @@ struct Track {
     direction: Option<(f64, f64)>,
     /// Updates in a row.
     hit_streak: u32,
-    /// Frames since the last update; 0 if it was updated in this frame.
-    unseen: u32,
-    /// The detection that it was updated with.
-    detection: usize,
 }
 
 /// The tracker.
@@ -119,17 +98,15 @@ impl OcTracker {
     /// Step 1.
     fn predict(&mut self) {
         self.tracks.retain_mut(|track| {
-            if track.unseen == 1 {
-                track.before_gap = Some(track.filter.clone());
+            let unseen = track.common.unseen;
+            if unseen == 1 {
+                track.before_gap = Some(track.common.filter.clone());
             }
-            if track.unseen > 0 {
+            if unseen > 0 {
                 track.hit_streak = 0;
             }
             track.age += 1;
-            track.unseen += 1;
-            let is_alive = track.filter.predict().is_ok();
-            let prediction = box_model::box_of(&track.filter.belief().mean).filter(|_| is_alive);
-            prediction.map(|area| track.predicted = area).is_some()
+            track.common.predict()
         });
     }
 
@@ -146,7 +123,7 @@ impl OcTracker {
         let never = 4.0 * (seen.len().min(tracks.len()) as f64 + 1.0);
         let overlaps = Grid::from_fn(seen.len(), tracks.len(), |row, column| {
             let (one, track) = (&detections[seen[row]], &self.tracks[tracks[column]]);
-            if one.class == track.class { overlap(track, one) } else { -1.0 }
+            if one.class == track.common.class { overlap(track, one) } else { -1.0 }
         });
         let costs = Grid::from_fn(seen.len(), tracks.len(), |row, column| match overlaps.at(row, column) {
             overlap if overlap < 0.0 => never,
@@ -169,21 +146,19 @@ impl OcTracker {
     /// Step 5, its beginning.
     fn start(&mut self, detection: usize, seen: &ScoredBox) -> Result<(), FilterError> {
         self.started += 1;
-        let (model, belief) = BoxModel::starting(&seen.area, self.parameters.noise)?;
-        let options = self.parameters.filter_options.for_track(self.started);
         self.tracks.push(Track {
-            identity: self.started,
-            filter: StateFilter::new(self.parameters.filter, model, belief, options)?,
+            common: BoxTrack::new(
+                self.started,
+                detection,
+                (&seen.area, seen.class),
+                &self.parameters.filter,
+            )?,
             before_gap: None,
-            predicted: seen.area,
-            class: seen.class,
             age: 0,
             last_seen: seen.area,
             sights: VecDeque::new(),
             direction: None,
             hit_streak: 0,
-            unseen: 0,
-            detection,
         });
         Ok(())
     }
@@ -192,18 +167,11 @@ impl OcTracker {
     fn report(&mut self) {
         let OcParameters { min_hits, max_age, .. } = self.parameters;
         let is_first = self.frames <= min_hits;
-        let due = self
-            .tracks
-            .iter()
-            .filter(|track| track.unseen == 0 && (track.hit_streak >= min_hits || is_first));
+        let due = (self.tracks.iter())
+            .filter(|track| track.common.unseen == 0 && (track.hit_streak >= min_hits || is_first));
         self.reported.clear();
-        self.reported.extend(due.map(|track| ReportedBox {
-            identity: track.identity,
-            tracked_box: track.last_seen,
-            class: track.class,
-            detection: track.detection,
-        }));
-        self.tracks.retain(|track| track.unseen <= max_age);
+        self.reported.extend(due.map(|track| track.common.report(track.last_seen)));
+        self.tracks.retain(|track| track.common.unseen <= max_age);
     }
 }
 
@@ -218,7 +186,7 @@ impl BoxTracker for OcTracker {
         let left = self.pair(
             detections,
             (sure, everyone),
-            |track, seen| seen.area.overlap(&track.predicted),
+            |track, seen| seen.area.overlap(&track.common.predicted),
             |track, seen| momentum * seen.confidence * track.agreement(&seen.area, look_back),
         );
         let last_seen = |track: &Track, seen: &ScoredBox| seen.area.overlap(&track.last_seen);
@@ -232,7 +200,7 @@ impl BoxTracker for OcTracker {
 
     fn move_camera(&mut self, motion: &CameraMotion) {
         for track in &mut self.tracks {
-            box_model::move_camera(&mut track.filter, motion);
+            box_model::move_camera(&mut track.common.filter, motion);
             if let Some(filter) = &mut track.before_gap {
                 box_model::move_camera(filter, motion);
             }
@@ -250,15 +218,12 @@ impl Track {
             self.direction = Some(direction(&from, seen));
         }
         if let Some(filter) = self.before_gap.take() {
-            self.filter = filter;
+            self.common.filter = filter;
             self.re_update(seen);
         }
-        // A measurement that the filter cannot take leaves its prediction.
-        let _ = self.filter.update(&box_model::measured(seen));
-        self.unseen = 0;
+        self.common.update(detection, seen);
         self.hit_streak += 1;
         self.last_seen = *seen;
-        self.detection = detection;
         self.sights.push_back((self.age, *seen));
         while self.sights.front().is_some_and(|(age, _)| age + look_back < self.age) {
             self.sights.pop_front();
@@ -269,14 +234,16 @@ impl Track {
     fn re_update(&mut self, seen: &Rect) {
         let (from, to) = (self.last_seen.centre(), seen.centre());
         let (first, last) = (self.last_seen, *seen);
-        for step in 1..=self.unseen {
-            let share = f64::from(step) / f64::from(self.unseen);
+        let unseen = self.common.unseen;
+        for step in 1..=unseen {
+            let share = f64::from(step) / f64::from(unseen);
             let between = |a: f64, b: f64| a + share * (b - a);
             let (w, h) = (between(first.w, last.w), between(first.h, last.h));
             let (x, y) = (between(from.0, to.0), between(from.1, to.1));
-            let _ = self.filter.update(&box_model::measured(&Rect::new(x - w / 2.0, y - h / 2.0, w, h)));
-            if step < self.unseen {
-                let _ = self.filter.predict();
+            let _ =
+                self.common.filter.update(&box_model::measured(&Rect::new(x - w / 2.0, y - h / 2.0, w, h)));
+            if step < unseen {
+                let _ = self.common.filter.predict();
             }
         }
     }
@@ -306,6 +273,10 @@ fn direction(from: &Rect, to: &Rect) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{
+        motion::{FilterKind, FilterOptions, StateFilter},
+        sort::{BoxNoise, box_model::BoxModel},
+    };
 
     fn at(x: f64) -> ScoredBox {
         ScoredBox { area: Rect::new(x, 50.0, 20.0, 40.0), confidence: 0.9, class: None }
@@ -350,7 +321,7 @@ mod tests {
         let moving = led.clone();
         led.update(&box_model::measured(&at(72.0).area)).unwrap();
         assert_ne!(moving.belief(), led.belief());
-        assert!((tracker.tracks[0].filter.belief().mean - led.belief().mean).norm() < 1e-9);
+        assert!((tracker.tracks[0].common.filter.belief().mean - led.belief().mean).norm() < 1e-9);
         assert!(led.belief().mean[4] < 4.0, "of 8 pixels a frame");
     }
 

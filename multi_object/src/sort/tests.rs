@@ -3,8 +3,8 @@
 use infopart::geometry::Rect;
 
 use super::{
-    BoxNoise, BoxTracker, ByteParameters, ByteTracker, OcParameters, OcTracker, Reported, ScoredBox, Sort,
-    SortParameters,
+    BoxFilterParameters, BoxNoise, BoxTracker, ByteParameters, ByteTracker, OcParameters, OcTracker,
+    Reported, ScoredBox, Sort, SortParameters,
 };
 use crate::{camera_motion::CameraMotion, motion::FilterKind};
 
@@ -53,11 +53,15 @@ fn the_youngest_is_reported_first_and_a_shrinking_box_does_not_break_its_track()
     }
 }
 
+fn in_proportion(kind: FilterKind) -> BoxFilterParameters {
+    BoxFilterParameters { kind, noise: BoxNoise::Proportional, ..BoxFilterParameters::default() }
+}
+
 #[test]
 fn under_noise_in_proportion_every_filter_follows_a_walker() {
     for filter in FilterKind::ALL {
         let mut sort =
-            Sort::new(SortParameters { filter, noise: BoxNoise::Proportional, ..SortParameters::default() });
+            Sort::new(SortParameters { filter: in_proportion(filter), ..SortParameters::default() });
         for frame in 0..40 {
             let seen = HERE.translated(2.0 * f64::from(frame), f64::from(frame));
             let reported = sort.update(&[seen], None).unwrap();
@@ -98,24 +102,23 @@ fn names_after_a_pan(mut tracker: Box<dyn BoxTracker>, is_told: bool) -> Vec<(u6
 fn what_is_remembered_moves_with_the_camera_under_every_method_and_filter() {
     let kept = [(1, Some(5), 0), (2, Some(6), 1)];
     for filter in FilterKind::ALL {
-        let noise = BoxNoise::Proportional;
+        let filter = in_proportion(filter);
         let trackers = || -> [Box<dyn BoxTracker>; 3] {
             [
-                Box::new(Sort::new(SortParameters { filter, noise, ..SortParameters::default() })),
+                Box::new(Sort::new(SortParameters { filter, ..SortParameters::default() })),
                 Box::new(ByteTracker::new(ByteParameters {
                     filter,
-                    noise,
                     enlarged: 0.0,
                     ..ByteParameters::default()
                 })),
-                Box::new(OcTracker::new(OcParameters { filter, noise, ..OcParameters::default() })),
+                Box::new(OcTracker::new(OcParameters { filter, ..OcParameters::default() })),
             ]
         };
         for (method, tracker) in trackers().into_iter().enumerate() {
-            assert_eq!(names_after_a_pan(tracker, true), kept, "{method}, {filter:?}");
+            assert_eq!(names_after_a_pan(tracker, true), kept, "{method}, {:?}", filter.kind);
         }
         for (method, tracker) in trackers().into_iter().enumerate() {
-            assert_ne!(names_after_a_pan(tracker, false), kept, "{method}, {filter:?}");
+            assert_ne!(names_after_a_pan(tracker, false), kept, "{method}, {:?}", filter.kind);
         }
     }
 }

@@ -101,7 +101,7 @@ fn an_ffmpeg_that_dies_names_the_last_good_frame() {
 #[test]
 fn an_old_ffmpeg_gets_the_old_option() {
     let script = "case \"$*\" in *-fps_mode*) echo \"Unrecognized option 'fps_mode'.\" >&2; exit 1;; esac\n\
-        case \"$*\" in *'-vsync passthrough'*) ;; *) exit 1;; esac\n";
+        case \"$*\" in *'-vf showinfo -vsync passthrough'*) ;; *) exit 1;; esac\n";
     let mut video = opened(&(script.to_owned() + &frames_at(&["0"])), ALL).unwrap();
     assert!(video.next_frame().unwrap().is_some());
     assert!(video.next_frame().unwrap().is_none());
