@@ -21,6 +21,8 @@ mod doubt;
 pub mod export;
 mod fusion;
 #[cfg(feature = "images")]
+pub mod import;
+#[cfg(feature = "images")]
 mod kept_frames;
 mod keys;
 mod passes;

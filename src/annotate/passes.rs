@@ -97,9 +97,8 @@ pub struct Pathfinder<'a> {
 
 impl Pathfinder<'_> {
     fn track(&mut self, leg: &Leg) -> Result<Pass, PassError> {
-        let tracker = (self.tracker)();
         let first = self.frames.view(leg.from).map_err(PassError::Frame)?;
-        let mut ongoing = OngoingPass::begin(leg, first, tracker)?;
+        let mut ongoing = OngoingPass::begin(leg, first, (self.tracker)())?;
         for _ in 0..leg.count {
             let view = self.frames.view(ongoing.next_frame()?).map_err(PassError::Frame)?;
             ongoing.see(view)?;
@@ -224,6 +223,14 @@ impl Passes {
                 self.known.push(pass);
                 self.known.len() - 1
             }
+        }
+    }
+
+    /// Remembers a pass instead of any other from the same box the same way, also if that is longer.
+    pub fn replace(&mut self, pass: Pass) {
+        match self.position(pass.from, pass.start, pass.direction) {
+            Some(at) => self.known[at] = pass,
+            None => self.known.push(pass),
         }
     }
 

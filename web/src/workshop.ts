@@ -391,7 +391,7 @@ export class Workshop {
 
     /** The objects of a project file or of another annotation instead of those here; one step of undo. */
     async takeFile(name: string, text: string): Promise<void> {
-        this.adopt(`opening ${name}`, await this.engine.ask("openProject", name, text));
+        this.adopt(`opening ${name}`, await this.engine.ask("openFile", name, text));
         await this.tellEngine();
     }
 

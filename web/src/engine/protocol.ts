@@ -16,7 +16,7 @@ export interface Services {
     places(): Place[];
     export(format: string): [string, string][];
     project(): string;
-    openProject(name: string, text: string): Opened;
+    openFile(name: string, text: string): Opened;
 }
 
 export type Service = keyof Services;

@@ -117,12 +117,12 @@ export class Engine implements DemoFrames {
         return this.ask({ ask: "project" }) as string;
     }
 
-    openProject(name: string, text: string): Opened {
-        return this.ask({ ask: "open_project", name, text }) as Opened;
+    openFile(name: string, text: string): Opened {
+        return this.ask({ ask: "open_file", name, text }) as Opened;
     }
 
-    demoSize(): { width: number; height: number; frames: number } {
-        return this.ask({ ask: "demo" }) as { width: number; height: number; frames: number };
+    demoSize(): { width: number; height: number; frames: number; truth: readonly ([number, number, number, number] | null)[] } {
+        return this.ask({ ask: "demo" }) as ReturnType<Engine["demoSize"]>;
     }
 
     demoFrame(frame: number): Pixels {

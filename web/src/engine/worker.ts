@@ -50,7 +50,7 @@ const answers: Answers = {
     places: () => opened().engine.places(),
     export: (format) => opened().engine.export(format),
     project: () => opened().engine.project(),
-    openProject: (name, text) => opened().engine.openProject(name, text),
+    openFile: (name, text) => opened().engine.openFile(name, text),
 };
 
 addEventListener("messageerror", () => {

@@ -19,6 +19,11 @@ function open(title: string, ...content: Node[]): HTMLDialogElement {
     return dialog;
 }
 
+/** The first key for an action, and a second if that is short. */
+function shown(keys: readonly string[]): readonly string[] {
+    return keys.slice(0, 2).filter((key, at) => at === 0 || key.length <= 2);
+}
+
 /** Every key. */
 export function showHelp(): void {
     const groups = KEYMAP.map((group) =>
@@ -26,7 +31,7 @@ export function showHelp(): void {
             "section",
             {},
             h("h3", {}, group.title),
-            h("dl", {}, ...group.bindings.flatMap(({ keys, meaning }) => [h("dt", {}, ...keys.map((key) => h("kbd", {}, key))), h("dd", {}, meaning)])),
+            h("dl", {}, ...group.bindings.flatMap(({ keys, meaning }) => [h("dt", {}, ...shown(keys).map((key) => h("kbd", {}, key))), h("dd", {}, meaning)])),
         ),
     );
     const mouse = h("p", { class: "note" }, "Mouse: drag to draw; drag a box or its edges to correct it; Shift-drag draws anew over it; the wheel zooms, the right button moves the picture.");

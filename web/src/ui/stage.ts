@@ -334,16 +334,18 @@ function drawBox(context: CanvasRenderingContext2D, shown: Shown, isSelected: bo
     const words = `${thing.name}${state === DRAWN ? " ◆" : isDoubtful ? " ?" : ""}`;
     context.font = "600 12px system-ui, sans-serif";
     const wide = Math.min(context.measureText(words).width, 240) + 10;
-    const above = box.y >= 20;
-    const y = above ? box.y - 20 : box.y + 1;
+    // A box that sticks out keeps its name in sight.
+    const { clientWidth, clientHeight } = context.canvas;
+    const x = Math.min(Math.max(box.x - 1, 2), clientWidth - wide - 2);
+    const y = Math.min(Math.max(box.y >= 20 ? box.y - 20 : box.y + 1, 2), clientHeight - 20);
     context.fillStyle = thing.colour;
     context.globalAlpha = isSelected ? 1 : 0.8;
     context.beginPath();
-    context.roundRect(box.x - 1, y, wide, 18, 4);
+    context.roundRect(x, y, wide, 18, 4);
     context.fill();
     context.globalAlpha = 1;
     context.fillStyle = isLight(thing.colour) ? "#111" : "#fff";
-    context.fillText(words, box.x + 4, y + 13, 240);
+    context.fillText(words, x + 5, y + 13, 240);
     if (isSelected) {
         for (const [x, y] of [[box.x, box.y], [box.x + box.w, box.y], [box.x, box.y + box.h], [box.x + box.w, box.y + box.h]] as const) {
             context.fillStyle = "#fff";

@@ -3,8 +3,9 @@
 use std::time::Duration;
 
 use infopart::annotate::{
-    Colour, KeyEntry, Leg, Object, Pass, Passes, Project, VideoInfo, export::Format, keys_of,
+    Colour, KeyEntry, Leg, Object, Pass, Passes, Project, VideoInfo, export::Format, import, keys_of,
 };
+use infopart::sequence::Walker;
 use serde::Deserialize;
 use serde_json::{Value, json};
 
@@ -41,9 +42,9 @@ pub enum Request {
     Export { format: String },
     /// The text of a project file.
     Project,
-    /// Objects of a project file, which become those of the session, with ids from 1.
-    OpenProject { name: String, text: String },
-    /// Size and length of the demo clip.
+    /// Objects of a project file or of any other annotation, which become those of the session, with ids from 1.
+    OpenFile { name: String, text: String },
+    /// Size and length of the demo clip, and where the walker is.
     Demo,
 }
 
@@ -111,10 +112,13 @@ impl Request {
                 }
                 project.to_text().map(Value::String).map_err(words)
             }
-            Self::OpenProject { name, text } => open_project(session, &name, &text),
+            Self::OpenFile { name, text } => open_file(session, &name, &text),
             Self::Demo => {
                 let options = demo_options();
-                Ok(json!({"width": options.width, "height": options.height, "frames": options.frames}))
+                let numbers = |rect: infopart::geometry::Rect| [rect.x, rect.y, rect.w, rect.h];
+                let walker = Walker::new(demo_options());
+                let truth: Vec<_> = walker.ground_truth().into_iter().map(|rect| rect.map(numbers)).collect();
+                Ok(json!({"width": options.width, "height": options.height, "frames": options.frames, "truth": truth}))
             }
         }
     }
@@ -131,8 +135,15 @@ fn export(session: &Session, format: &str) -> Result<Value, String> {
     serde_json::to_value(files).map_err(|error| error.to_string())
 }
 
-fn open_project(session: &mut Session, name: &str, text: &str) -> Result<Value, String> {
-    let mut project = Project::parse(text, name).map_err(|error| error.to_string())?;
+fn open_file(session: &mut Session, name: &str, text: &str) -> Result<Value, String> {
+    let mut project = match is_project(text) {
+        true => Project::parse(text, name).map_err(|error| error.to_string())?,
+        false => {
+            let imported = import::read(name, text, &session.about).map_err(|error| error.to_string())?;
+            let (objects, passes) = imported.into_iter().unzip();
+            Project { objects, passes, tracked_by: session.tracked_by()? }
+        }
+    };
     for object in &project.objects {
         object
             .check(session.about.frames, session.about.width, session.about.height)
@@ -143,9 +154,17 @@ fn open_project(session: &mut Session, name: &str, text: &str) -> Result<Value, 
     session.objects = (1..).zip(project.objects).collect();
     let passes: Vec<&Pass> = project.passes.iter().flat_map(Passes::iter).collect();
     for &pass in &passes {
-        session.passes.insert(pass.clone());
+        session.passes.replace(pass.clone());
     }
     Ok(json!({"objects": objects, "passes": passes}))
+}
+
+/// Also of a project that is cut short, so that it is told.
+fn is_project(text: &str) -> bool {
+    match serde_json::from_str::<Value>(text) {
+        Ok(value) => value.get("objects").is_some() || value.get("version").is_some(),
+        Err(_) => text.trim_start().starts_with("{\"version\""),
+    }
 }
 
 fn told_object(id: u32, object: &Object) -> Value {
