@@ -7,7 +7,7 @@ import {
     fromEntry, hasBox, keyFrames, thingOf, toEntry, withKey, withNewThing, withWords, withoutKey, withoutThing,
     type Box, type Document, type Mark, type Thing,
 } from "./model/document.ts";
-import { BEGINNING, canRedo, canUndo, done, lastDeed, now, redone, undone, type History } from "./model/history.ts";
+import { BEGINNING, amended, canRedo, canUndo, done, lastDeed, now, redone, undone, type History } from "./model/history.ts";
 import { ABSENT, DRAWN, TRACKED, Track } from "./model/track.ts";
 import type { Library, Work } from "./store/library.ts";
 import type { About, SourceSpec } from "./video/source.ts";
@@ -33,6 +33,10 @@ export class Workshop {
     private readonly tracks = new Map<number, Track>();
     private readonly engine: EngineClient;
     private runs = 0;
+    private isTelling = false;
+    /** Whose tracks the engine has to be asked for, once it has the document. */
+    private readonly toRefresh = new Set<number>();
+    private lastNudge: { id: number; frame: number } | null = null;
     /** Whether the picture goes where the tracker is; until the user goes elsewhere. */
     private isFollowing = false;
     private placeNow: Place | null = null;
@@ -83,6 +87,21 @@ export class Workshop {
 
     get lastDeed(): string {
         return lastDeed(this.history);
+    }
+
+    /** Whether something is being worked out. */
+    get isBusy(): boolean {
+        return this.runs > 0 || this.isTelling;
+    }
+
+    /** Where an object is in a frame: as it was drawn there, else as it was tracked. */
+    boxOf(thing: Thing, frame: number): Box | null {
+        const mark = thing.keys.get(frame);
+        if (mark !== undefined) {
+            return mark === "absent" ? null : mark;
+        }
+        const track = this.track(thing.id);
+        return track.state(frame) === TRACKED ? track.box(frame) : null;
     }
 
     track(id: number): Track {
@@ -170,8 +189,22 @@ export class Workshop {
         }
     }
 
+    /** Changes the selected object's box here; what a held key does is one step of undo. */
+    nudge(change: (box: Box) => Box): void {
+        const { thing } = this;
+        const box = thing && this.boxOf(thing, this.frame);
+        if (thing && box) {
+            const deed = "moving a box by keys";
+            const document = withKey(this.document, thing.id, this.frame, change(box));
+            const changed = { id: thing.id, frame: this.frame };
+            const isSameStep = this.lastDeed === deed && this.lastNudge?.id === changed.id && this.lastNudge.frame === changed.frame;
+            this.commit(deed, document, changed, isSameStep);
+            this.lastNudge = changed;
+        }
+    }
+
     confirm(): void {
-        const box = this.thing && this.track(this.thing.id).box(this.frame);
+        const box = this.thing && this.boxOf(this.thing, this.frame);
         if (box) {
             this.mark(box, "confirming a box");
         } else {
@@ -286,17 +319,15 @@ export class Workshop {
 
     // The engine and the storage follow the document.
 
-    private commit(deed: string, document: Document, changed?: { id: number; frame: number }): void {
+    private commit(deed: string, document: Document, changed?: { id: number; frame: number }, isSameStep = false): void {
         const again = changed === undefined ? null : this.trackedAround(changed.id, changed.frame);
-        this.history = done(this.history, deed, document);
+        this.history = isSameStep ? amended(this.history, document) : done(this.history, deed, document);
         this.saveSoon();
         this.events.changed();
-        void this.tellEngine(changed === undefined ? undefined : [changed.id]).then(() => {
-            if (changed !== undefined && again !== null) {
-                return this.run(changed.id, again.before, again.after, false);
-            }
-            return null;
-        });
+        void this.tellEngine(changed === undefined ? undefined : [changed.id]);
+        if (changed !== undefined && again !== null) {
+            void this.run(changed.id, again.before, again.after, false);
+        }
     }
 
     /** Which of the stretches that meet in a frame were tracked. */
@@ -319,12 +350,25 @@ export class Workshop {
         }
     }
 
-    private async tellEngine(ids?: readonly number[]): Promise<void> {
+    /** The engine gets the document as it is now; what comes while it is told is told together. */
+    private async tellEngine(ids: readonly number[] = this.document.things.map((thing) => thing.id)): Promise<void> {
+        ids.forEach((id) => this.toRefresh.add(id));
+        if (this.isTelling) {
+            return;
+        }
+        this.isTelling = true;
         try {
-            await this.engine.ask("objects", this.document.things.map(toEntry));
-            await this.refresh(ids ?? this.document.things.map((thing) => thing.id));
+            while (this.toRefresh.size > 0) {
+                const stale = [...this.toRefresh];
+                this.toRefresh.clear();
+                await this.engine.ask("objects", this.document.things.map(toEntry));
+                await this.refresh(stale);
+            }
         } catch (error) {
             this.events.failed(error);
+        } finally {
+            this.isTelling = false;
+            this.events.changed();
         }
     }
 

@@ -35,6 +35,8 @@ export class Visitor {
 
     static async arrive(context: BrowserContext): Promise<Visitor> {
         const page = await context.newPage();
+        // A machine may be busy with other work.
+        page.setDefaultTimeout(120_000);
         const visitor = new Visitor(page, context);
         page.on("pageerror", (error) => visitor.problems.push(error.message));
         page.on("console", (message) => message.type() === "error" && visitor.problems.push(message.text()));
@@ -49,9 +51,17 @@ export class Visitor {
         const session = await this.context.newCDPSession(this.page);
         const { width, height } = this.page.viewportSize() ?? { width: 800, height: 600 };
         const data = { items: [], files, dragOperationsMask: 1 };
-        for (const type of ["dragEnter", "dragOver", "drop"] as const) {
-            await session.send("Input.dispatchDragEvent", { type, x: width / 2, y: height / 2, data });
-        }
+        const drag = (type: "dragEnter" | "dragOver" | "drop"): Promise<unknown> => session.send("Input.dispatchDragEvent", { type, x: width / 2, y: height / 2, data });
+        await drag("dragEnter");
+        await drag("dragOver");
+        // A busy page says late that it would take the files, and a drop before that is none.
+        await this.page.waitForSelector("#app.dragging");
+        await drag("dragOver");
+        await this.frames();
+        await drag("dragOver");
+        await drag("drop");
+        await this.page.waitForSelector("#app:not(.dragging)");
+        await session.detach();
     }
 
     async opened(name: string): Promise<void> {
@@ -89,10 +99,8 @@ export class Visitor {
 
     /** Waits until nothing is being tracked any more. */
     async tracked(): Promise<string> {
-        const progress = this.page.locator(".progress");
-        await this.page.waitForTimeout(150);
-        await this.page.waitForFunction(() => !document.querySelector(".progress")?.textContent?.includes("to go"), null, { timeout: 300_000 });
-        return (await progress.textContent()) ?? "";
+        await this.settled();
+        return (await this.page.locator(".progress").textContent()) ?? "";
     }
 
     async goTo(frame: number): Promise<void> {
@@ -100,6 +108,17 @@ export class Visitor {
         await this.page.keyboard.type(String(frame + 1));
         await this.press("Enter");
         await this.page.waitForFunction((text) => document.querySelector(".where")?.textContent?.startsWith(text), `${frame + 1} / `);
+    }
+
+    /** Two pictures of the screen. */
+    private frames(): Promise<unknown> {
+        return this.page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
+    }
+
+    /** Until nothing is being worked out; two pictures of the screen later it would show. */
+    async settled(): Promise<void> {
+        await this.frames();
+        await this.page.waitForSelector('.workbench[aria-busy="false"]', { timeout: 300_000 });
     }
 
     /** What the export of this name gives. */

@@ -1,7 +1,7 @@
 // Videos that the tests make with ffmpeg, and what ffprobe says of them.
 
 import { execFileSync } from "node:child_process";
-import { existsSync, mkdirSync, mkdtempSync, readdirSync, statSync, writeFileSync } from "node:fs";
+import { existsSync, mkdtempSync, statSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 
@@ -58,14 +58,4 @@ export function rawFile(name: string, frames: readonly Uint8Array[]): string {
 export function dataFolder(): string | null {
     const named = process.env["INFOPART_DATA"] ?? join(import.meta.dirname, "../../../shared/data");
     return existsSync(named) && statSync(named).isDirectory() ? named : null;
-}
-
-export function picturesOf(sequence: string): string[] {
-    return readdirSync(join(sequence, "img")).sort().map((name) => join(sequence, "img", name));
-}
-
-export function made_folder(name: string): string {
-    const path = join(folder, name);
-    mkdirSync(path, { recursive: true });
-    return path;
 }

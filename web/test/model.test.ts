@@ -2,7 +2,7 @@
 
 import { expect, test } from "vitest";
 import { EMPTY, clipped, fromEntry, toEntry, withKey, withNewThing, withWords, withoutKey, withoutThing } from "../src/model/document.ts";
-import { BEGINNING, canRedo, canUndo, done, lastDeed, now, redone, undone } from "../src/model/history.ts";
+import { BEGINNING, amended, canRedo, canUndo, done, lastDeed, now, redone, undone } from "../src/model/history.ts";
 import { COLUMNS, DRAWN, TRACKED, Track } from "../src/model/track.ts";
 import { KEYMAP, actionOf } from "../src/ui/keymap.ts";
 
@@ -38,6 +38,10 @@ test("undo and redo go along the steps, and a new step forgets what was undone",
     expect(canRedo(history)).toBe(false);
     expect(now(history).things.length).toBe(2);
     expect(canUndo(undone(undone(undone(history))))).toBe(false);
+    // What a held key does is one step.
+    const held = amended(amended(done(BEGINNING, "moving", EMPTY), withNewThing(EMPTY, "x")), EMPTY);
+    expect(now(undone(held))).toBe(EMPTY);
+    expect(held.steps.length).toBe(2);
     for (let step = 0; step < 300; step++) {
         history = done(history, `${step}`, EMPTY);
     }

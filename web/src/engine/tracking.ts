@@ -60,6 +60,7 @@ export class Tracking {
         let rows: [number, ...Sighting][] = [];
         let told = performance.now();
         let distance = 0;
+        let isNeeded = true;
         const tellNow = async (pixels: Pixels | null): Promise<void> => {
             const picture = withPictures && pixels !== null ? await this.picture(pixels) : null;
             this.tell({ is: "seen", object, leftToDo: leg.count - distance + later, rows, picture });
@@ -72,7 +73,8 @@ export class Tracking {
                 const pixels = await this.frames.get(frame);
                 if (this.isOutdated) {
                     this.isOutdated = false;
-                    if (!missing().some((other) => isSame(other, leg))) {
+                    isNeeded = missing().some((other) => isSame(other, leg));
+                    if (!isNeeded) {
                         break;
                     }
                 }
@@ -86,7 +88,9 @@ export class Tracking {
         } finally {
             const pass = this.engine.endPass();
             await tellNow(null);
-            this.tell({ is: "pass", pass });
+            if (isNeeded) {
+                this.tell({ is: "pass", pass });
+            }
         }
         return distance;
     }

@@ -23,31 +23,55 @@ export function given(files: readonly File[], folder: string): Given | null {
 
 /** The files of a drop, those in dropped folders too; and the name of the first folder. */
 export async function dropped(transfer: DataTransfer): Promise<{ files: File[]; folder: string }> {
-    const entries = [...transfer.items].map((item) => item.webkitGetAsEntry()).filter((entry) => entry !== null);
-    if (entries.length === 0) {
-        return { files: [...transfer.files], folder: "" };
-    }
+    // All are taken hold of at once: a drop is over when its listener has to wait.
+    const items = [...transfer.items].map((item) => ({ file: item.getAsFile(), entry: item.webkitGetAsEntry(), handle: handleOf(item) }));
     const files: File[] = [];
-    for (const entry of entries) {
-        await gather(entry, files);
+    let folder = "";
+    for (const { file, entry, handle } of items) {
+        if (entry?.isDirectory !== true) {
+            files.push(...(file === null ? [] : [file]));
+            continue;
+        }
+        folder ||= entry.name;
+        // Entries of a page that was opened from disk cannot be read; handles can, where there are any.
+        const directory = await handle?.catch(() => null);
+        if (directory?.kind === "directory") {
+            await gatherHandles(directory as FileSystemDirectoryHandle, files);
+        } else {
+            await gatherEntries(entry as FileSystemDirectoryEntry, files);
+        }
     }
-    return { files, folder: entries.find((entry) => entry.isDirectory)?.name ?? "" };
+    return { files, folder };
 }
 
-async function gather(entry: FileSystemEntry, files: File[]): Promise<void> {
-    if (entry.isFile) {
-        files.push(await new Promise((resolve, reject) => (entry as FileSystemFileEntry).file(resolve, reject)));
-        return;
+function handleOf(item: DataTransferItem): Promise<FileSystemHandle | null> | undefined {
+    const withHandle = item as DataTransferItem & { getAsFileSystemHandle?(): Promise<FileSystemHandle | null> };
+    return withHandle.getAsFileSystemHandle?.();
+}
+
+async function gatherHandles(directory: FileSystemDirectoryHandle, files: File[]): Promise<void> {
+    const children = directory as FileSystemDirectoryHandle & { values(): AsyncIterable<FileSystemHandle> };
+    for await (const child of children.values()) {
+        if (child.kind === "directory") {
+            await gatherHandles(child as FileSystemDirectoryHandle, files);
+        } else if (PICTURE_NAMES.test(child.name)) {
+            files.push(await (child as FileSystemFileHandle).getFile());
+        }
     }
-    const reader = (entry as FileSystemDirectoryEntry).createReader();
+}
+
+async function gatherEntries(directory: FileSystemDirectoryEntry, files: File[]): Promise<void> {
+    const reader = directory.createReader();
     for (;;) {
         const some = await new Promise<FileSystemEntry[]>((resolve, reject) => reader.readEntries(resolve, reject));
         if (some.length === 0) {
             return;
         }
         for (const child of some) {
-            if (child.isDirectory || PICTURE_NAMES.test(child.name)) {
-                await gather(child, files);
+            if (child.isDirectory) {
+                await gatherEntries(child as FileSystemDirectoryEntry, files);
+            } else if (PICTURE_NAMES.test(child.name)) {
+                files.push(await new Promise((resolve, reject) => (child as FileSystemFileEntry).file(resolve, reject)));
             }
         }
     }

@@ -28,6 +28,12 @@ export function done(history: History, deed: string, document: Document): Histor
     return { steps, at: steps.length - 1 };
 }
 
+/** The last step, done a little further: what a key that is held does is one step. */
+export function amended(history: History, document: Document): History {
+    const step = { deed: lastDeed(history), document };
+    return canUndo(history) ? { steps: [...history.steps.slice(0, history.at), step], at: history.at } : history;
+}
+
 export function canUndo(history: History): boolean {
     return history.at > 0;
 }

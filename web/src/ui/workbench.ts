@@ -1,6 +1,7 @@
 // An open video on the screen: everything that shows the workshop, and everything that is pressed.
 
 import type { Box } from "../model/document.ts";
+import { DRAWN, TRACKED } from "../model/track.ts";
 import { download, stem, zipped } from "../files/download.ts";
 import { pick } from "../files/given.ts";
 import type { Source } from "../video/source.ts";
@@ -274,12 +275,7 @@ export class Workbench {
 
     /** Moves or changes the selected box by pixels. */
     private nudge(dx: number, dy: number, dw: number, dh: number): void {
-        const { workshop } = this;
-        const box = workshop.thing && workshop.track(workshop.thing.id).box(workshop.frame);
-        if (box) {
-            const moved = { x: box.x + dx, y: box.y + dy, w: Math.max(2, box.w + dw), h: Math.max(2, box.h + dh) };
-            workshop.mark(moved, "moving a box");
-        }
+        this.workshop.nudge((box) => ({ x: box.x + dx, y: box.y + dy, w: Math.max(2, box.w + dw), h: Math.max(2, box.h + dh) }));
     }
 
     private placeBox(): void {
@@ -295,8 +291,8 @@ export class Workbench {
         const { things } = workshop.document;
         const shown = things.flatMap((thing): Shown[] => {
             const track = workshop.track(thing.id);
-            const box = track.box(frame);
-            return box === null ? [] : [{ thing, box, confidence: track.confidence(frame), state: track.state(frame) }];
+            const box = workshop.boxOf(thing, frame);
+            return box === null ? [] : [{ thing, box, confidence: track.confidence(frame), state: thing.keys.has(frame) ? DRAWN : TRACKED }];
         });
         this.stage.showBoxes(shown, selected, workshop.isDrawingNew || things.length === 0);
         this.timeline.show(about.frames, things.map((thing) => ({ thing, track: workshop.track(thing.id) })), selected);
@@ -306,6 +302,7 @@ export class Workbench {
         const time = about.times?.[frame];
         this.where.textContent = `${frame + 1} / ${about.frames}${time === undefined ? "" : `  ${clock(time)}`}`;
         this.progress.textContent = workshop.leftToDo !== null ? `${workshop.leftToDo} frames to go` : speedOf(workshop);
+        this.element.setAttribute("aria-busy", String(workshop.isBusy));
         this.undoButton.disabled = !workshop.canUndo;
         this.redoButton.disabled = !workshop.canRedo;
         this.undoButton.title = workshop.canUndo ? `Undo ${workshop.lastDeed} (${keyOf("undo")})` : "Nothing to undo";
