@@ -195,11 +195,7 @@ impl Passes {
     ///
     /// # Panics
     /// Never, as long as all of the leg's frames are frames of the video: otherwise as its `view` does.
-    pub fn sightings(
-        &mut self,
-        finder: &mut Pathfinder<'_>,
-        leg: &Leg,
-    ) -> Result<&[Sighting], PassError> {
+    pub fn sightings(&mut self, finder: &mut Pathfinder<'_>, leg: &Leg) -> Result<&[Sighting], PassError> {
         let at = match self.position(leg.from, leg.start, leg.direction) {
             Some(at) if self.known[at].sightings.len() >= leg.count => at,
             _ if leg.count == 0 => return Ok(&[]),

@@ -47,8 +47,8 @@ struct Attributes {
 
 /// Images without `frame_id` are frames in their order.
 pub(super) fn tracks(text: &str) -> Result<Vec<RowTrack>, String> {
-    let Coco { images, annotations, categories } =
-        serde_json::from_str(text).map_err(|error| format!("is no COCO with images and annotations: {error}"))?;
+    let Coco { images, annotations, categories } = serde_json::from_str(text)
+        .map_err(|error| format!("is no COCO with images and annotations: {error}"))?;
     let frames: HashMap<u64, usize> =
         images.iter().enumerate().map(|(at, image)| (image.id, image.frame_id.unwrap_or(at))).collect();
     let classes: HashMap<u64, &str> =

@@ -15,7 +15,10 @@ pub(super) fn tracks(text: &str) -> Result<Vec<RowTrack>, String> {
     let tracks: Vec<Node<'_, '_>> =
         xml.root_element().children().filter(|node| node.has_tag_name("track")).collect();
     if tracks.is_empty() && xml.descendants().any(|node| node.has_tag_name("image")) {
-        return Err("is CVAT for images, which does not say which boxes are one object; export CVAT for video".to_owned());
+        return Err(
+            "is CVAT for images, which does not say which boxes are one object; export CVAT for video"
+                .to_owned(),
+        );
     }
     tracks.iter().map(track).collect()
 }

@@ -26,8 +26,10 @@ pub(super) fn tracks(text: &str) -> Result<Vec<RowTrack>, String> {
     for (at, line) in text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()) {
         let number = at + 1;
         let line: Line = serde_json::from_str(line).map_err(|error| format!("line {number}: {error}"))?;
-        let index =
-            line.frame.checked_sub(1).ok_or_else(|| format!("line {number}: frame 0; frames count from 1"))?;
+        let index = line
+            .frame
+            .checked_sub(1)
+            .ok_or_else(|| format!("line {number}: frame 0; frames count from 1"))?;
         let Line { object, name, class, x, y, w, h, confidence, key, .. } = line;
         let words = || (name.clone().unwrap_or_else(|| format!("object {object}")), class);
         let id = (object, name.clone());

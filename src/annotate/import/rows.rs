@@ -48,8 +48,12 @@ fn mot(text: &str) -> Result<Vec<RowTrack>, String> {
     let mut tracks = Vec::new();
     for (line, row) in text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()) {
         let cells = numbers(row).unwrap_or_default();
-        let (Some(&[number, id, x, y, w, h]), true) = (cells.first_chunk(), cells.first() >= Some(&1.0)) else {
-            return Err(format!("line {}: {row:?} is not frame,id,x,y,w,h,..., with frames from 1", line + 1));
+        let (Some(&[number, id, x, y, w, h]), true) = (cells.first_chunk(), cells.first() >= Some(&1.0))
+        else {
+            return Err(format!(
+                "line {}: {row:?} is not frame,id,x,y,w,h,..., with frames from 1",
+                line + 1
+            ));
         };
         if cells.get(6) == Some(&0.0) {
             continue;

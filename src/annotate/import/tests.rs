@@ -46,7 +46,9 @@ fn tracks_of(imported: &[Imported], frames: usize) -> Vec<Track> {
 }
 
 fn boxes(track: &Track) -> Vec<Option<[f64; 4]>> {
-    let numbers = |found: Annotated| [found.box_in_frame.x, found.box_in_frame.y, found.box_in_frame.w, found.box_in_frame.h];
+    let numbers = |found: Annotated| {
+        [found.box_in_frame.x, found.box_in_frame.y, found.box_in_frame.w, found.box_in_frame.h]
+    };
     track.iter().map(|found| found.map(numbers)).collect()
 }
 
@@ -86,7 +88,10 @@ fn key_frames_are_those_of_the_file_and_absence_is_marked_where_rows_end() {
     // The confidence comes along, and a box that was drawn is sure.
     let track = &tracks_of(&imported, 8)[0];
     assert_eq!(track[1].unwrap().confidence, 0.75);
-    assert_eq!(track[4].unwrap(), Annotated { box_in_frame: Rect::new(8.0, 10.5, 20.0, 30.25), confidence: 1.0, is_key: true });
+    assert_eq!(
+        track[4].unwrap(),
+        Annotated { box_in_frame: Rect::new(8.0, 10.5, 20.0, 30.25), confidence: 1.0, is_key: true }
+    );
 }
 
 #[test]
@@ -109,7 +114,10 @@ fn imported_boxes_stay_until_a_neighbour_is_corrected() {
             Err("tracked again".into())
         }
     }
-    let (mut imported, about) = (read("f.csv", "frame,x,y,w,h,key\n1,1,1,9,9,1\n2,2,1,9,9,0\n3,3,1,9,9,0\n", &about(3)).unwrap(), about(3));
+    let (mut imported, about) = (
+        read("f.csv", "frame,x,y,w,h,key\n1,1,1,9,9,1\n2,2,1,9,9,0\n3,3,1,9,9,0\n", &about(3)).unwrap(),
+        about(3),
+    );
     let (object, passes) = &mut imported[0];
     let mut tracker = || -> Box<dyn crate::tracker::Tracker> { unreachable!("nothing is to be tracked") };
     let mut watch = || ControlFlow::Continue(());
@@ -139,9 +147,18 @@ fn what_cannot_be_read_is_named_with_its_line_and_what_to_do() {
         ("<annotations><track", "is no whole XML"),
         ("<svg/>", "begins with <annotations>"),
         ("<annotations><image/></annotations>", "CVAT for video"),
-        ("<annotations><track id=\"7\"><box frame=\"0\" xtl=\"a\"/></track></annotations>", "track 7: a box has no number as \"xtl\""),
-        ("{\"images\": [],\n\"annotations\": [{\"image_id\": 1, \"bbox\": [1, 2, 3, 4]}]}", "there is no image 1"),
-        ("{\"images\": [{\"id\": 1}],\n\"annotations\": [{\"image_id\": 1, \"bbox\": [1, 2, 3, 4]}]}", "has no track_id"),
+        (
+            "<annotations><track id=\"7\"><box frame=\"0\" xtl=\"a\"/></track></annotations>",
+            "track 7: a box has no number as \"xtl\"",
+        ),
+        (
+            "{\"images\": [],\n\"annotations\": [{\"image_id\": 1, \"bbox\": [1, 2, 3, 4]}]}",
+            "there is no image 1",
+        ),
+        (
+            "{\"images\": [{\"id\": 1}],\n\"annotations\": [{\"image_id\": 1, \"bbox\": [1, 2, 3, 4]}]}",
+            "has no track_id",
+        ),
         ("{\"frame\": 1, \"x\": 1}\n{", "line 1: missing field"),
     ] {
         let message = message(text);

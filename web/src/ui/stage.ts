@@ -31,6 +31,8 @@ const WHOLE: Grip = { left: true, top: true, right: true, bottom: true };
 /** In screen pixels. */
 const REACH = 8;
 const SMALLEST_DRAWN = 4;
+/** Letters of a name beside a box. */
+const LONGEST_NAME = 28;
 const MOST_ZOOM = 32;
 
 export class Stage {
@@ -331,9 +333,10 @@ function drawBox(context: CanvasRenderingContext2D, shown: Shown, isSelected: bo
     context.setLineDash(isDoubtful ? [5, 4] : []);
     outline(context, box, thing.colour, isSelected ? 2.5 : 1.5);
     context.setLineDash([]);
-    const words = `${thing.name}${state === DRAWN ? " ◆" : isDoubtful ? " ?" : ""}`;
+    const name = thing.name.length > LONGEST_NAME ? `${thing.name.slice(0, LONGEST_NAME)}…` : thing.name;
+    const words = `${name}${state === DRAWN ? " ◆" : isDoubtful ? " ?" : ""}`;
     context.font = "600 12px system-ui, sans-serif";
-    const wide = Math.min(context.measureText(words).width, 240) + 10;
+    const wide = context.measureText(words).width + 10;
     // A box that sticks out keeps its name in sight.
     const { clientWidth, clientHeight } = context.canvas;
     const x = Math.min(Math.max(box.x - 1, 2), clientWidth - wide - 2);
@@ -345,7 +348,7 @@ function drawBox(context: CanvasRenderingContext2D, shown: Shown, isSelected: bo
     context.fill();
     context.globalAlpha = 1;
     context.fillStyle = isLight(thing.colour) ? "#111" : "#fff";
-    context.fillText(words, x + 5, y + 13, 240);
+    context.fillText(words, x + 5, y + 13);
     if (isSelected) {
         for (const [x, y] of [[box.x, box.y], [box.x + box.w, box.y], [box.x, box.y + box.h], [box.x + box.w, box.y + box.h]] as const) {
             context.fillStyle = "#fff";

@@ -77,8 +77,15 @@ impl Request {
             Self::Video { name, fingerprint, width, height, labels, times } => {
                 let time = |seconds: f64| Duration::try_from_secs_f64(seconds.max(0.0)).unwrap_or_default();
                 let times = times.into_iter().map(|seconds| seconds.map(time)).collect();
-                let about =
-                    VideoInfo { name, frames: labels.len(), width, height, labels, times, first_frame_hash: 0 };
+                let about = VideoInfo {
+                    name,
+                    frames: labels.len(),
+                    width,
+                    height,
+                    labels,
+                    times,
+                    first_frame_hash: 0,
+                };
                 *session = Session::of(about, fingerprint);
                 Ok(Value::Null)
             }
@@ -118,7 +125,9 @@ impl Request {
                 let numbers = |rect: infopart::geometry::Rect| [rect.x, rect.y, rect.w, rect.h];
                 let walker = Walker::new(demo_options());
                 let truth: Vec<_> = walker.ground_truth().into_iter().map(|rect| rect.map(numbers)).collect();
-                Ok(json!({"width": options.width, "height": options.height, "frames": options.frames, "truth": truth}))
+                Ok(
+                    json!({"width": options.width, "height": options.height, "frames": options.frames, "truth": truth}),
+                )
             }
         }
     }
@@ -150,7 +159,8 @@ fn open_file(session: &mut Session, name: &str, text: &str) -> Result<Value, Str
             .map_err(|error| format!("{name}: {error}"))?;
     }
     project.forget_what_others_tracked(session.tracked_by()?);
-    let objects: Vec<Value> = (1u32..).zip(&project.objects).map(|(id, object)| told_object(id, object)).collect();
+    let objects: Vec<Value> =
+        (1u32..).zip(&project.objects).map(|(id, object)| told_object(id, object)).collect();
     session.objects = (1..).zip(project.objects).collect();
     let passes: Vec<&Pass> = project.passes.iter().flat_map(Passes::iter).collect();
     for &pass in &passes {

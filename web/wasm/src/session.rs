@@ -51,7 +51,13 @@ impl Default for Session {
 
 /// The walker of the demo clip.
 pub fn demo_options() -> WalkerOptions {
-    WalkerOptions { width: 480, height: 320, frames: 180, occluder: Occluder::Tree, ..WalkerOptions::default() }
+    WalkerOptions {
+        width: 480,
+        height: 320,
+        frames: 180,
+        occluder: Occluder::Tree,
+        ..WalkerOptions::default()
+    }
 }
 
 impl Session {
@@ -98,7 +104,9 @@ impl Session {
     /// they are to be tracked.
     pub fn missing_legs(&self, id: u32, before: usize, after: usize) -> Result<Vec<Leg>, String> {
         let object = self.object(id)?;
-        object.check(self.about.frames, self.about.width, self.about.height).map_err(|error| error.to_string())?;
+        object
+            .check(self.about.frames, self.about.width, self.about.height)
+            .map_err(|error| error.to_string())?;
         let is_missing = |leg: &Leg| self.passes.known(leg).len() < leg.count;
         let ends = |leg: &Leg| match leg.direction {
             Direction::Forward => (leg.from, leg.from + leg.count),
@@ -130,7 +138,8 @@ impl Session {
     pub fn begin_pass(&mut self, pixels: &[u8]) -> Result<(), String> {
         let leg = self.planned.take().ok_or("no pass was planned")?;
         let tracker = Box::new(InfoPart::new(parameters()?));
-        let pass = OngoingPass::begin(&leg, self.view(pixels)?, tracker).map_err(|error| error.to_string())?;
+        let pass =
+            OngoingPass::begin(&leg, self.view(pixels)?, tracker).map_err(|error| error.to_string())?;
         self.ongoing = Some(pass);
         Ok(())
     }
@@ -186,7 +195,9 @@ impl Session {
         let VideoInfo { frames, width, height, .. } = self.about;
         let parameters = serde_json::to_string(&*parameters()?).map_err(|error| error.to_string())?;
         let (version, video) = (infopart::VERSION, &self.fingerprint);
-        Ok(format!("infopart {version} in a browser; {frames} frames of {width}x{height}, {video}; {parameters}"))
+        Ok(format!(
+            "infopart {version} in a browser; {frames} frames of {width}x{height}, {video}; {parameters}"
+        ))
     }
 
     /// A frame of the demo clip.
