@@ -1,11 +1,12 @@
 // Videos that the tests make with ffmpeg, and what ffprobe says of them.
 
 import { execFileSync } from "node:child_process";
-import { existsSync, mkdtempSync, statSync, writeFileSync } from "node:fs";
+import { existsSync, mkdtempSync, rmSync, statSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 
 export const folder = mkdtempSync(join(tmpdir(), "infopart-web-"));
+process.on("exit", () => rmSync(folder, { recursive: true, force: true }));
 
 function has(program: string): boolean {
     try {

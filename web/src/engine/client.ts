@@ -45,8 +45,8 @@ export class EngineClient {
         this.waiting.clear();
     }
 
-    private giveUp(reason: string): void {
-        const error = new EngineFailure(`the tracker's worker failed: ${reason}`);
+    private giveUp(reason: string | undefined): void {
+        const error = new EngineFailure(`The tracker's worker failed (${reason ?? "no reason given"}). Load the page again: what you did is saved.`);
         this.waiting.forEach((waiting) => waiting.reject(error));
         this.waiting.clear();
     }

@@ -148,7 +148,7 @@ export class Engine implements DemoFrames {
             status = call();
         } catch (error) {
             const words = new TextDecoder().decode(this.answer());
-            throw new EngineFailure(`the engine failed: ${words || String(error)}`);
+            throw new EngineFailure(`The engine failed (${words || String(error)}). Load the page again: what you did is saved.`);
         }
         if (status !== 0) {
             throw new SourceError(new TextDecoder().decode(this.answer()));

@@ -56,7 +56,6 @@ class Container implements Source {
         private readonly input: Input,
         track: InputVideoTrack,
         readonly about: About,
-        private readonly offset: number,
     ) {
         this.sink = new VideoSampleSink(track);
     }
@@ -90,7 +89,7 @@ class Container implements Source {
     }
 
     private time(frame: number): number {
-        return (this.about.times?.[frame] ?? 0) + this.offset;
+        return (this.about.times?.[frame] ?? 0) + this.about.start;
     }
 
     close(): void {
@@ -103,9 +102,7 @@ export async function openContainer(file: File, known: About | null): Promise<So
     const input = new Input({ formats: ALL_FORMATS, source: new BlobSource(file) });
     try {
         const track = await videoTrack(file, input);
-        const index = await indexOf(track);
-        const about = known ?? (await describe(file, track, index));
-        return new Container(input, track, about, index.offset);
+        return new Container(input, track, known ?? (await describe(file, track)));
     } catch (error) {
         input.dispose();
         throw error;
@@ -131,8 +128,6 @@ interface Index {
     /** In order of presentation, in seconds, as the container has them. */
     readonly times: Float64Array;
     readonly isKey: readonly boolean[];
-    /** The time of the first frame. */
-    readonly offset: number;
 }
 
 /** Every frame that is shown. What a container cuts away has a time before 0. */
@@ -144,14 +139,15 @@ async function indexOf(track: InputVideoTrack): Promise<Index> {
         }
     }
     packets.sort((a, b) => a.time - b.time);
-    const [first] = packets;
-    if (first === undefined) {
-        throw new SourceError("this video has no frame; choose another file");
-    }
-    return { times: Float64Array.from(packets, (packet) => packet.time), isKey: packets.map((packet) => packet.isKey), offset: first.time };
+    return { times: Float64Array.from(packets, (packet) => packet.time), isKey: packets.map((packet) => packet.isKey) };
 }
 
-async function describe(file: File, track: InputVideoTrack, { times, isKey, offset }: Index): Promise<About> {
+async function describe(file: File, track: InputVideoTrack): Promise<About> {
+    const { times, isKey } = await indexOf(track);
+    const [offset] = times;
+    if (offset === undefined) {
+        throw new SourceError(`${file.name} has no frame in it; choose another file`);
+    }
     const [width, height] = await Promise.all([track.getDisplayWidth(), track.getDisplayHeight()]);
     const frames = times.length;
     let start = 0;
@@ -163,6 +159,7 @@ async function describe(file: File, track: InputVideoTrack, { times, isKey, offs
         height,
         frames,
         times: times.map((time) => time - offset),
+        start: offset,
         labels: Array.from({ length: frames }, (_, frame) => `frame ${frame + 1}`),
         startsAt,
     };

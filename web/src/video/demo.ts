@@ -30,6 +30,7 @@ export function openDemo(engine: DemoFrames): Source {
         height,
         frames,
         times: Float64Array.from({ length: frames }, (_, frame) => frame / FRAMES_PER_SECOND),
+        start: 0,
         labels: Array.from({ length: frames }, (_, frame) => `frame ${frame + 1}`),
         startsAt: everyFrame(frames),
     };

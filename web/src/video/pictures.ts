@@ -81,6 +81,7 @@ async function describe(name: string, files: readonly File[], first: File): Prom
         height,
         frames: files.length,
         times: null,
+        start: 0,
         labels: files.map((file) => file.name),
         startsAt: everyFrame(files.length),
     };

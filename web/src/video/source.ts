@@ -16,6 +16,8 @@ export interface About {
     readonly frames: number;
     /** Presentation times in seconds since the start; none for pictures. */
     readonly times: Float64Array | null;
+    /** The time of the first frame as the container has it, in seconds. */
+    readonly start: number;
     /** What each frame is called: file names, or `frame N`. */
     readonly labels: readonly string[];
     /** For each frame the one from which the decoder has to start. */
