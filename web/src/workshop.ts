@@ -276,6 +276,7 @@ export class Workshop {
 
     private async run(id: number, before: number, after: number, isFollowed: boolean): Promise<Tracked | null> {
         this.runs++;
+        this.events.changed();
         this.isFollowing = isFollowed;
         try {
             const tracked = await this.engine.ask("track", id, before, after, isFollowed);

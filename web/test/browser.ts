@@ -72,8 +72,17 @@ export class Visitor {
         return keys.reduce((before, key) => before.then(() => this.page.keyboard.press(key)), Promise.resolve());
     }
 
+    /** Until the picture is that of the frame where the visitor is. */
+    async seen(): Promise<void> {
+        await this.page.waitForFunction(() => {
+            const shown = document.querySelector<HTMLElement>(".stage")?.dataset["frame"];
+            return document.querySelector(".where")?.textContent?.startsWith(`${Number(shown) + 1} / `);
+        });
+    }
+
     /** Drags on the picture, in pixels of the frame. */
     async drag(width: number, height: number, from: { x: number; y: number }, to: { x: number; y: number }): Promise<void> {
+        await this.seen();
         const stage = await this.page.locator(".stage").boundingBox();
         if (stage === null) {
             throw new Error("there is no stage");

@@ -62,7 +62,7 @@ describe.skipIf(!canRun)("a video", () => {
 
     /** How bright the middle of the shown picture is, once it is the picture of that frame. */
     async function brightness(): Promise<number> {
-        await visitor.page.waitForTimeout(250);
+        await visitor.seen();
         return visitor.page.evaluate(() => {
             const canvas = document.querySelector<HTMLCanvasElement>(".stage-canvas");
             const pixel = canvas?.getContext("2d")?.getImageData(canvas.width / 2, canvas.height / 2, 1, 1).data;
@@ -166,6 +166,7 @@ describe.skipIf(!canRun)("a video", () => {
                 expect((await visitor.where()).split("  ")[1]).toBe(`0:${seconds.toFixed(2).padStart(5, "0")}`);
             }
             await visitor.press("ArrowLeft", "ArrowLeft");
+            await visitor.page.waitForFunction(() => document.querySelector(".where")?.textContent?.startsWith("6 / "));
             expect(Math.abs((await brightness()) - ((20 + 3 * 5 - 16) * 255) / 219)).toBeLessThan(1.7);
         });
     }

@@ -42,6 +42,7 @@ export class Stage {
     private width = 1;
     private height = 1;
     private picture: ImageBitmap | null = null;
+    private frame = 0;
     private shown: readonly Shown[] = [];
     private selectedId: number | null = null;
     private isDrawingNew = false;
@@ -72,9 +73,10 @@ export class Stage {
         this.fit();
     }
 
-    /** The picture belongs to whoever gives it. */
-    show(picture: ImageBitmap): void {
+    /** The picture of a frame; it belongs to whoever gives it. The element says which frame is seen. */
+    show(picture: ImageBitmap, frame: number): void {
         this.picture = picture;
+        this.frame = frame;
         this.draw();
     }
 
@@ -241,6 +243,7 @@ export class Stage {
             context.imageSmoothingEnabled = scale < 4;
             context.imageSmoothingQuality = "high";
             context.drawImage(this.picture, left, top, this.width * scale, this.height * scale);
+            this.element.dataset["frame"] = String(this.frame);
         }
         const place = (box: Box): Box => ({ x: left + box.x * scale, y: top + box.y * scale, w: box.w * scale, h: box.h * scale });
         for (const shown of this.shown) {

@@ -34,9 +34,9 @@ export class Viewer {
     }
 
     /** A picture that somebody else decoded. */
-    showThis(picture: ImageBitmap): void {
+    showThis(picture: ImageBitmap, frame: number): void {
         this.wanted = null;
-        this.stage.show(picture);
+        this.stage.show(picture, frame);
         this.handed?.close();
         this.handed = picture;
     }
@@ -55,7 +55,7 @@ export class Viewer {
                 const picture = await this.cache.get(frame);
                 // What was handed over meanwhile is newer.
                 if (this.wanted === null || this.wanted === frame) {
-                    this.stage.show(picture);
+                    this.stage.show(picture, frame);
                 }
             } catch (error) {
                 this.failed(error);

@@ -142,7 +142,7 @@ export class Workbench {
 
     moved(picture: ImageBitmap | null): void {
         if (picture !== null) {
-            this.viewer.showThis(picture);
+            this.viewer.showThis(picture, this.workshop.frame);
         } else {
             this.viewer.show(this.workshop.frame);
         }
