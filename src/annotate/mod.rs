@@ -21,6 +21,8 @@ mod doubt;
 pub mod export;
 mod fusion;
 #[cfg(feature = "images")]
+pub mod import;
+#[cfg(feature = "images")]
 mod kept_frames;
 mod keys;
 mod passes;
@@ -33,7 +35,7 @@ pub use fusion::{Fused, fuse};
 #[cfg(feature = "images")]
 pub use kept_frames::{KeptFrames, VideoInfo};
 pub use keys::{Colour, KeyError, Mark, Object};
-pub use passes::{Direction, Frames, Pass, PassError, Passes, Pathfinder, Sighting};
+pub use passes::{Direction, Frames, Leg, OngoingPass, Pass, PassError, Passes, Pathfinder, Sighting};
 #[cfg(feature = "images")]
 pub use project::{KeyEntry, PROJECT_VERSION, Project, ProjectError, keys_of};
-pub use track::{Annotated, Sides, annotate};
+pub use track::{Annotated, Sides, Stretch, annotate, known_track, stretches};

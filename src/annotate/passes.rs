@@ -96,27 +96,85 @@ pub struct Pathfinder<'a> {
 }
 
 impl Pathfinder<'_> {
-    fn track(&mut self, pass: &mut Pass, count: usize) -> Result<(), PassError> {
-        let number = |index: usize| index + 1;
-        let mut tracker = (self.tracker)();
-        pass.sightings.clear();
-        let first = self.frames.view(pass.from).map_err(PassError::Frame)?;
-        let refused = |index, source| PassError::Track { number: number(index), source };
-        tracker.init(first, pass.start).map_err(|error| refused(pass.from, error))?;
-        for distance in 1..=count {
-            let index = match pass.direction {
-                Direction::Forward => pass.from + distance,
-                Direction::Backward => pass.from - distance,
-            };
-            let view = self.frames.view(index).map_err(PassError::Frame)?;
-            let stamp = FrameStamp { index: Some(index as u64), time: None };
-            let found = tracker.update_at(view, stamp).map_err(|error| refused(index, error))?;
-            pass.sightings.push(Sighting { box_in_frame: found.box_in_frame, confidence: found.confidence });
+    fn track(&mut self, leg: &Leg) -> Result<Pass, PassError> {
+        let first = self.frames.view(leg.from).map_err(PassError::Frame)?;
+        let mut ongoing = OngoingPass::begin(leg, first, (self.tracker)())?;
+        for _ in 0..leg.count {
+            let view = self.frames.view(ongoing.next_frame()?).map_err(PassError::Frame)?;
+            ongoing.see(view)?;
             if (self.watch)().is_break() {
                 return Err(PassError::Interrupted);
             }
         }
-        Ok(())
+        Ok(ongoing.into_pass())
+    }
+}
+
+/// A pass to be tracked.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Leg {
+    /// The key frame, counted from 0.
+    pub from: usize,
+    /// The box there, frame coordinates.
+    pub start: Rect,
+    /// Which way.
+    pub direction: Direction,
+    /// How many frames after the key frame are to be seen; all of them are frames of the video.
+    pub count: usize,
+}
+
+/// A pass under way, for whoever is handed one frame after the other and does not have them by number.
+pub struct OngoingPass {
+    pass: Pass,
+    tracker: Box<dyn Tracker>,
+}
+
+impl OngoingPass {
+    /// Starts `tracker` on `view`, the leg's key frame.
+    ///
+    /// # Errors
+    /// [`PassError::Track`] if the tracker refuses the box.
+    pub fn begin(leg: &Leg, view: FrameView<'_>, mut tracker: Box<dyn Tracker>) -> Result<Self, PassError> {
+        let Leg { from, start, direction, count } = *leg;
+        let refused = |source| PassError::Track { number: from + 1, source };
+        tracker.init(view, start).map_err(refused)?;
+        let pass = Pass { from, start, direction, sightings: Vec::with_capacity(count) };
+        Ok(Self { pass, tracker })
+    }
+
+    /// The number, counted from 0, of the frame that is to be seen next.
+    ///
+    /// # Errors
+    /// [`PassError::Frame`] once a backward pass has seen the first frame.
+    pub fn next_frame(&self) -> Result<usize, PassError> {
+        let distance = self.pass.sightings.len() + 1;
+        match self.pass.direction {
+            Direction::Forward => Ok(self.pass.from + distance),
+            Direction::Backward => self
+                .pass
+                .from
+                .checked_sub(distance)
+                .ok_or_else(|| PassError::Frame("there is no frame before the first".into())),
+        }
+    }
+
+    /// Tracks into `view`, the pixels of the [next frame](Self::next_frame).
+    ///
+    /// # Errors
+    /// [`PassError`]; the pass then stays as it was.
+    pub fn see(&mut self, view: FrameView<'_>) -> Result<Sighting, PassError> {
+        let index = self.next_frame()?;
+        let stamp = FrameStamp { index: Some(index as u64), time: None };
+        let refused = |source| PassError::Track { number: index + 1, source };
+        let found = self.tracker.update_at(view, stamp).map_err(refused)?;
+        let sighting = Sighting { box_in_frame: found.box_in_frame, confidence: found.confidence };
+        self.pass.sightings.push(sighting);
+        Ok(sighting)
+    }
+
+    /// What was seen until now.
+    pub fn into_pass(self) -> Pass {
+        self.pass
     }
 }
 
@@ -130,47 +188,62 @@ pub struct Passes {
 }
 
 impl Passes {
-    /// What a pass from `start` in frame `from` sees in the next `count` frames that way; tracked only if it is not known. A pass
-    /// that was interrupted leaves nothing.
+    /// What the pass of `leg` sees; tracked only if it is not known. A pass that was interrupted leaves nothing.
     ///
     /// # Errors
     /// [`PassError`].
     ///
     /// # Panics
-    /// Never, as long as `from + count` (or `from - count`) is a frame of the video: otherwise as its `view` does.
-    pub fn sightings(
-        &mut self,
-        finder: &mut Pathfinder<'_>,
-        from: usize,
-        start: Rect,
-        direction: Direction,
-        count: usize,
-    ) -> Result<&[Sighting], PassError> {
-        if count == 0 {
-            return Ok(&[]);
-        }
-        self.used.resize(self.known.len(), false);
-        let same = |pass: &Pass| (pass.from, pass.start, pass.direction) == (from, start, direction);
-        let at = match self.known.iter().position(same) {
-            Some(at) if self.known[at].sightings.len() >= count => at,
-            found => {
-                let mut pass = Pass { from, start, direction, sightings: Vec::with_capacity(count) };
-                finder.track(&mut pass, count)?;
-                match found {
-                    Some(at) => {
-                        self.known[at] = pass;
-                        at
-                    }
-                    None => {
-                        self.known.push(pass);
-                        self.used.push(false);
-                        self.known.len() - 1
-                    }
-                }
-            }
+    /// Never, as long as all of the leg's frames are frames of the video: otherwise as its `view` does.
+    pub fn sightings(&mut self, finder: &mut Pathfinder<'_>, leg: &Leg) -> Result<&[Sighting], PassError> {
+        let at = match self.position(leg.from, leg.start, leg.direction) {
+            Some(at) if self.known[at].sightings.len() >= leg.count => at,
+            _ if leg.count == 0 => return Ok(&[]),
+            _ => self.insert(finder.track(leg)?),
         };
+        self.used.resize(self.known.len(), false);
         self.used[at] = true;
-        Ok(&self.known[at].sightings[..count])
+        Ok(&self.known[at].sightings[..leg.count])
+    }
+
+    /// Remembers a pass, instead of a shorter one from the same box the same way; gives its position.
+    pub fn insert(&mut self, pass: Pass) -> usize {
+        match self.position(pass.from, pass.start, pass.direction) {
+            Some(at) => {
+                if self.known[at].sightings.len() < pass.sightings.len() {
+                    self.known[at] = pass;
+                }
+                at
+            }
+            None => {
+                self.known.push(pass);
+                self.known.len() - 1
+            }
+        }
+    }
+
+    /// Remembers a pass instead of any other from the same box the same way, also if that is longer.
+    pub fn replace(&mut self, pass: Pass) {
+        match self.position(pass.from, pass.start, pass.direction) {
+            Some(at) => self.known[at] = pass,
+            None => self.known.push(pass),
+        }
+    }
+
+    /// What is known of the leg's pass, also if it is less than the leg, up to the leg's length.
+    pub fn known(&self, leg: &Leg) -> &[Sighting] {
+        match self.position(leg.from, leg.start, leg.direction) {
+            Some(at) => {
+                let seen = &self.known[at].sightings;
+                &seen[..leg.count.min(seen.len())]
+            }
+            None => &[],
+        }
+    }
+
+    fn position(&self, from: usize, start: Rect, direction: Direction) -> Option<usize> {
+        let same = |pass: &Pass| (pass.from, pass.start, pass.direction) == (from, start, direction);
+        self.known.iter().position(same)
     }
 
     /// Forgets what was not asked for since the last call: passes from key frames that are no more.

@@ -209,12 +209,16 @@ impl Project {
     /// [`OutputError`]; an earlier file of that name then stays as it was.
     pub fn write(&self, path: &Path) -> Result<(), OutputError> {
         let mut file = PartialFile::create(path)?;
-        let text = self.to_json().map_err(|error| file.name_error(error.into()))?;
+        let text = self.to_text().map_err(|error| file.name_error(error.into()))?;
         file.write_all(text.as_bytes()).map_err(|error| file.name_error(error))?;
         file.complete()
     }
 
-    fn to_json(&self) -> serde_json::Result<String> {
+    /// The text of a project file.
+    ///
+    /// # Errors
+    /// None that is known: whatever a project can hold can be written.
+    pub fn to_text(&self) -> serde_json::Result<String> {
         let objects = self.objects.iter().enumerate().map(|(index, object)| ObjectEntry {
             name: object.name.clone(),
             class: object.class.clone(),

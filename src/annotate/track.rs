@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use super::{
     fusion::fuse,
     keys::{Mark, Object},
-    passes::{Direction, PassError, Passes, Pathfinder, Sighting},
+    passes::{Direction, Leg, PassError, Passes, Pathfinder, Sighting},
 };
 use crate::geometry::Rect;
 
@@ -65,45 +65,102 @@ pub fn annotate(
     passes: &mut Passes,
     finder: &mut Pathfinder<'_>,
 ) -> Result<Vec<Option<Annotated>>, PassError> {
-    let mut track = vec![None; count];
+    for leg in stretches(object, count, sides).iter().flat_map(Stretch::legs) {
+        passes.sightings(finder, &leg)?;
+    }
+    Ok(known_track(object, count, sides, passes))
+}
+
+/// The frames from one key frame to the next, or to an end of the video.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stretch {
+    /// The forward pass, if the stretch begins at a box.
+    pub forward: Option<Leg>,
+    /// The backward pass, if it ends at one.
+    pub backward: Option<Leg>,
+}
+
+impl Stretch {
+    /// The passes that are needed.
+    pub fn legs(&self) -> impl Iterator<Item = Leg> + use<> {
+        self.forward.into_iter().chain(self.backward)
+    }
+}
+
+/// Where the tracker has to go for an object, in the order of frames; only stretches with frames between their ends.
+pub fn stretches(object: &Object, count: usize, sides: Sides) -> Vec<Stretch> {
     let keys: Vec<(usize, Mark)> = object.keys.iter().map(|(&frame, &mark)| (frame, mark)).collect();
-    if let Some(&(frame, Mark::Box(start))) = keys.first()
+    let mut stretches = Vec::new();
+    if let Some(&(from, Mark::Box(start))) = keys.first()
         && sides == Sides::Both
+        && from > 0
     {
-        let seen = passes.sightings(finder, frame, start, Direction::Backward, frame)?;
-        for (slot, seen) in track[..frame].iter_mut().rev().zip(seen) {
+        let backward = Some(Leg { from, start, direction: Direction::Backward, count: from });
+        stretches.push(Stretch { forward: None, backward });
+    }
+    for (at, &(from, mark)) in keys.iter().enumerate() {
+        let Mark::Box(start) = mark else { continue };
+        let next = keys.get(at + 1).copied();
+        let end = next.map_or(count, |(next, _)| next);
+        if end <= from + 1 {
+            continue;
+        }
+        let leg = |from, start, direction, count| Leg { from, start, direction, count };
+        stretches.push(match next {
+            // Both passes reach the other's key frame: what they are off there is their drift.
+            Some((next, Mark::Box(last))) if sides == Sides::Both => Stretch {
+                forward: Some(leg(from, start, Direction::Forward, next - from)),
+                backward: Some(leg(next, last, Direction::Backward, next - from)),
+            },
+            _ => Stretch {
+                forward: Some(leg(from, start, Direction::Forward, end - from - 1)),
+                backward: None,
+            },
+        });
+    }
+    stretches
+}
+
+/// [`annotate`] without tracking: `None` also where no pass that is known has been. Two passes are fused once both are whole; until
+/// then the forward one counts as far as it goes, and then the backward one.
+pub fn known_track(object: &Object, count: usize, sides: Sides, passes: &Passes) -> Vec<Option<Annotated>> {
+    let mut track = vec![None; count];
+    for (&frame, mark) in &object.keys {
+        if let (Some(slot), Some(drawn)) = (track.get_mut(frame), mark.in_frame()) {
+            *slot = Some(Annotated::key(drawn));
+        }
+    }
+    for stretch in stretches(object, count, sides) {
+        let seen = |leg: Option<Leg>| leg.map_or(&[][..], |leg| passes.known(&leg));
+        let (forward, backward) = (seen(stretch.forward), seen(stretch.backward));
+        if let (Some(first), Some(last)) = (stretch.forward, stretch.backward)
+            && forward.len() == first.count
+            && backward.len() == last.count
+        {
+            let fused = fuse(first.start, last.start, forward, backward);
+            for (slot, fused) in track[first.from + 1..last.from].iter_mut().zip(fused) {
+                *slot = Some(Annotated::tracked(fused.box_in_frame, fused.confidence));
+            }
+            continue;
+        }
+        if let Some(leg) = stretch.backward {
+            let before = track[leg.from - leg.count..leg.from].iter_mut().rev();
+            fill(before, backward);
+        }
+        if let Some(leg) = stretch.forward {
+            fill(track[leg.from + 1..=leg.from + leg.count].iter_mut(), forward);
+        }
+    }
+    track
+}
+
+/// Puts what a pass saw where nothing was drawn.
+fn fill<'a>(slots: impl Iterator<Item = &'a mut Option<Annotated>>, seen: &[Sighting]) {
+    for (slot, seen) in slots.zip(seen) {
+        if !slot.is_some_and(|found| found.is_key) {
             *slot = Some(seen.into());
         }
     }
-    for (at, &(frame, mark)) in keys.iter().enumerate() {
-        let Mark::Box(start) = mark else { continue };
-        track[frame] = Some(Annotated::key(start));
-        let next = keys.get(at + 1).copied();
-        let end = next.map_or(count, |(next, _)| next);
-        let between = end - frame - 1;
-        match next {
-            Some((next, Mark::Box(last))) if sides == Sides::Both => {
-                if between == 0 {
-                    continue;
-                }
-                let length = next - frame;
-                let forward = passes.sightings(finder, frame, start, Direction::Forward, length)?.to_vec();
-                let backward = passes.sightings(finder, next, last, Direction::Backward, length)?;
-                for (slot, fused) in
-                    track[frame + 1..end].iter_mut().zip(fuse(start, last, &forward, backward))
-                {
-                    *slot = Some(Annotated::tracked(fused.box_in_frame, fused.confidence));
-                }
-            }
-            _ => {
-                let seen = passes.sightings(finder, frame, start, Direction::Forward, between)?;
-                for (slot, seen) in track[frame + 1..end].iter_mut().zip(seen) {
-                    *slot = Some(seen.into());
-                }
-            }
-        }
-    }
-    Ok(track)
 }
 
 #[cfg(test)]

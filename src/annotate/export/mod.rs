@@ -115,13 +115,18 @@ impl Tracks<'_> {
         if partial.exists() {
             fs::remove_dir_all(&partial).map_err(|error| failed(&partial, error))?;
         }
-        for (name, text) in yolo::files(self) {
+        for (name, text) in self.yolo_files() {
             let file = partial.join(name);
             let folder = file.parent().unwrap_or(&partial);
             fs::create_dir_all(folder).map_err(|error| failed(folder, error))?;
             fs::write(&file, text).map_err(|error| failed(&file, error))?;
         }
         fs::rename(&partial, path).map_err(|error| failed(path, error))
+    }
+
+    /// The files of YOLO's folder: name and text.
+    pub fn yolo_files(&self) -> Vec<(String, String)> {
+        yolo::files(self)
     }
 
     /// The classes in the order of their first object.

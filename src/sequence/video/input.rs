@@ -12,6 +12,7 @@ pub(in super::super) enum VideoInput {
     /// A file.
     File(PathBuf),
     /// A named pipe.
+    #[cfg_attr(not(unix), allow(dead_code))]
     Fifo(PathBuf),
     /// Standard input.
     Standard,

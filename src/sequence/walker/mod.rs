@@ -142,6 +142,14 @@ impl Walker {
         self.moments.iter().map(|moment| (!moment.is_away).then(|| moment.box_in_frame())).collect()
     }
 
+    /// The frame at `index`, `None` if there is no such frame. Frames can be had in any order.
+    pub fn frame(&self, index: usize) -> Option<Frame> {
+        let (width, height) = (self.options.width, self.options.height);
+        (index < self.moments.len())
+            .then(|| self.rgb(index))
+            .and_then(|pixels| Frame::new(pixels, width, height, PixelFormat::Rgb).ok())
+    }
+
     /// Whether a wall or a tree hides the person's whole box in the frame at `index`.
     ///
     /// # Panics
