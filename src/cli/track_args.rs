@@ -49,8 +49,8 @@ pub struct TrackArgs {
     pub format: Option<Format>,
     #[command(flatten)]
     pub parameters: ParameterArgs,
-    /// Draw boxes and particles on every frame: pictures DIR/000001.jpg and so on, or a video (mp4, mkv, mov, avi;
-    /// needs ffmpeg)
+    /// Draw boxes, particles, other places that look like the target (violet) and where a lost one is searched (blue) on
+    /// every frame: pictures DIR/000001.jpg and so on, or a video (mp4, mkv, mov, avi; needs ffmpeg)
     #[arg(long, value_name = "DIR|FILE.mp4")]
     pub annotate: Option<PathBuf>,
     /// Track only every K-th frame from the first on, and predict the boxes between
