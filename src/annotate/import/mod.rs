@@ -106,13 +106,12 @@ fn imported(index: usize, track: RowTrack, about: &VideoInfo) -> Result<Imported
             ));
         }
     }
-    let is_key = key_frames(&rows, frames);
     let mut object = Object { name, class, colour: Colour::of_object(index), keys: BTreeMap::new() };
     let mut passes = Passes::default();
     let mut pass: Option<Pass> = None;
-    for frame in 0..frames {
+    for (frame, is_key) in key_frames(&rows, frames).into_iter().enumerate() {
         match rows.get(&frame) {
-            Some(row) if is_key[frame] => {
+            Some(row) if is_key => {
                 object.keys.insert(frame, Mark::Box(row.rect));
                 let next = Pass {
                     from: frame,
@@ -166,11 +165,11 @@ fn no_class() -> String {
 }
 
 /// The track with this key, made if it is not there; in the order of the file.
-fn track_of<'a, K: PartialEq>(
-    tracks: &'a mut Vec<(K, RowTrack)>,
+fn track_of<K: PartialEq>(
+    tracks: &mut Vec<(K, RowTrack)>,
     key: K,
     words: impl FnOnce() -> (String, String),
-) -> &'a mut RowTrack {
+) -> &mut RowTrack {
     let at = tracks.iter().position(|(known, _)| *known == key).unwrap_or_else(|| {
         let (name, class) = words();
         tracks.push((key, RowTrack { name, class, rows: BTreeMap::new() }));
