@@ -6,6 +6,5 @@ export default defineConfig({
     build: { target: "es2023", assetsInlineLimit: Number.MAX_SAFE_INTEGER, modulePreload: false, chunkSizeWarningLimit: 8000 },
     // A page that was opened from disk may start no module as a worker.
     worker: { format: "iife" },
-    // A browser on a busy machine now and then misses a step that it takes the next time.
-    test: { retry: 1, include: ["test/**/*.test.ts"], testTimeout: 600_000, hookTimeout: 600_000, fileParallelism: false },
+    test: { include: ["test/**/*.test.ts"], testTimeout: 600_000, hookTimeout: 600_000, fileParallelism: false },
 } as Parameters<typeof defineConfig>[0]);
